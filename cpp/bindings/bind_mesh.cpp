@@ -1,0 +1,9 @@
+#include "bindings/bindings.hpp"
+
+namespace py = pybind11;
+
+namespace codesign {
+
+void bind_mesh(py::module_& m) { (void)m; }
+
+}  // namespace codesign

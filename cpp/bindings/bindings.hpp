@@ -1,0 +1,16 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+// One function per group of bindings; conversion and docstrings only, no algorithms.
+namespace codesign {
+
+void bind_dynamics(
+    pybind11::module_& m);               // submodule codesign._core.dynamics: models and algorithms
+void bind_flight(pybind11::module_& m);  // the same submodule: box QP, flight
+void bind_mesh(pybind11::module_& m);    // submodule codesign._core.fem: surfaces, tetrahedra
+void bind_static(pybind11::module_& m);  // the same submodule: elasticity, results
+void bind_evaluate(
+    pybind11::module_& m);  // codesign._core.evaluate: meshes, solves, flies in one call
+
+}  // namespace codesign

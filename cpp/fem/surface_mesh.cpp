@@ -1,0 +1,1 @@
+#include "fem/surface_mesh.hpp"

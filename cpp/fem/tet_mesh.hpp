@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "fem/surface_mesh.hpp"
+
+namespace codesign::fem {
+
+using Tets10 = Eigen::Matrix<int, Eigen::Dynamic, 10, Eigen::RowMajor>;
+using Triangles6 = Eigen::Matrix<int, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
+// Quadratic tetrahedra. Corner nodes first (positive volume: det(x1-x0, x2-x0, x3-x0) > 0), then
+// the mid-edge nodes on edges 01 12 02 03 13 23 (the order of VTK and Abaqus). Boundary triangles:
+// corners counter-clockwise seen from outside, then the mid-edge nodes on 01 12 20.
+struct TetMesh {
+  Points nodes;                         // (n, 3) m
+  Tets10 tets;                          // (m, 10)
+  Triangles6 boundary;                  // (b, 6)
+  std::vector<int> boundary_face;       // (b) index into face_names
+  std::vector<std::string> face_names;  // as in the surface it was made from
+};
+
+}  // namespace codesign::fem

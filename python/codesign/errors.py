@@ -1,0 +1,33 @@
+"""Typed errors: what went wrong, where and why. Every error of the product derives from CodesignError."""
+
+
+class CodesignError(Exception):
+    """Base of all errors that a user's input or a numerical breakdown can cause."""
+
+
+class StudyError(CodesignError):
+    """A study file that cannot be used; the message names file, key and reason."""
+
+
+class DesignError(CodesignError, ValueError):
+    """Design values that are unknown, missing, out of bounds or off the grid."""
+
+
+class GeometryError(CodesignError):
+    """A part whose parameters give no valid solid; the message names parameter, value and limit."""
+
+
+class UrdfError(CodesignError):
+    """A robot description that cannot be simulated; the message names the element."""
+
+
+class MeshError(CodesignError):
+    """A surface or volume mesh that is open, inverted, degenerate, too large, or could not be made."""
+
+
+class SolverError(CodesignError):
+    """A linear system that is singular or whose solution misses the residual tolerance."""
+
+
+class StoreError(CodesignError):
+    """A run's database that cannot be opened, read or written."""

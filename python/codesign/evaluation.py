@@ -1,0 +1,60 @@
+"""The result of one evaluation: what is ranked, stored, printed and reported."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+Status = Literal["feasible", "infeasible", "failed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """All numbers of one design; SI units except `design`, which keeps the study's units.
+
+    status: `feasible`; `infeasible` (constraints violated, numbers valid); `failed` (no numbers, `reason` says why).
+    objectives: the family that the study minimises; empty if the flight was lost (infeasible) or the evaluation failed.
+    violations: how far each constraint is violated, relative to its limit; 0 where it holds. Ranking uses their sum.
+    """
+
+    design: dict[str, float]
+    status: Status
+    reason: str | None = None
+    objectives: dict[str, float] = field(default_factory=dict)
+    objective_families: dict[str, dict[str, float]] = field(default_factory=dict)
+    constraints: dict[str, float] = field(default_factory=dict)
+    violations: dict[str, float] = field(default_factory=dict)
+    parts: dict[str, dict[str, Any]] = field(default_factory=dict)
+    flight: dict[str, Any] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def failure(cls, design: dict[str, float], reason: str, provenance: dict[str, Any] | None = None) -> Evaluation:
+        """An evaluation that gave no numbers."""
+        return cls(design=design, status="failed", reason=reason, provenance=provenance or {})
+
+    @property
+    def total_violation(self) -> float:
+        """Sum of the constraint violations; 0 for a feasible design."""
+        return sum(self.violations.values())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON document of `codesign evaluate --json`."""
+        return dataclasses.asdict(self)
+
+    @classmethod
+    def from_dict(cls, document: dict[str, Any]) -> Evaluation:
+        """Inverse of `to_dict`."""
+        return cls(**document)
+
+    def to_json(self) -> str:
+        """One line of JSON; floats round-trip exactly."""
+        return json.dumps(self.to_dict(), allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Evaluation:
+        """Inverse of `to_json`."""
+        return cls.from_dict(json.loads(text))

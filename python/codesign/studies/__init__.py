@@ -1,0 +1,1 @@
+"""Shipped studies: data (TOML, URDF) and small part definitions."""

@@ -1,0 +1,1 @@
+"""Jet interfaces of the flying humanoid iRonCub."""

@@ -1,0 +1,7 @@
+"""Conversions between SI and the units of files and people; used only where a file or a person is read or written."""
+
+import math
+
+MILLIMETRE = 1e-3  # m
+DEGREE = math.pi / 180.0  # rad
+GRAM_SQUARE_MILLIMETRE = 1e-9  # kg m²
