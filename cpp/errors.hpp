@@ -18,6 +18,11 @@ struct UrdfError : Error {
   using Error::Error;
 };
 
+// A joint or frame that the robot does not have; a ValueError in Python too.
+struct UnknownNameError : UrdfError {
+  using UrdfError::UrdfError;
+};
+
 // A surface or volume mesh that is open, inverted, degenerate, too large, or could not be made.
 struct MeshError : Error {
   using Error::Error;

@@ -18,6 +18,8 @@ PYBIND11_MODULE(_core, m) {
     };
     try {
       if (p) std::rethrow_exception(p);
+    } catch (const codesign::UnknownNameError& e) {
+      raise("UnknownNameError", e);
     } catch (const codesign::UrdfError& e) {
       raise("UrdfError", e);
     } catch (const codesign::MeshError& e) {

@@ -21,6 +21,10 @@ class UrdfError(CodesignError):
     """A robot description that cannot be simulated; the message names the element."""
 
 
+class UnknownNameError(UrdfError, ValueError):
+    """A joint or frame that the robot does not have; the message lists what it has."""
+
+
 class MeshError(CodesignError):
     """A surface or volume mesh that is open, inverted, degenerate, too large, or could not be made."""
 

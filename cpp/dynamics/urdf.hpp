@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/model.hpp"
+
+namespace codesign::dynamics {
+
+struct UrdfOptions {
+  // Names of the joints that move, in the wanted order; all others are locked at position 0 and
+  // their links lumped. Absent: every joint that is not fixed, in the order of the URDF text.
+  std::optional<std::vector<std::string>> joints;
+  // Accept inertia tensors that no body can have (spec of the published iRonCub robots); nothing
+  // else is waived.
+  bool as_published = false;
+  // The root link does not move.
+  bool fixed_base = false;
+};
+
+// The robot in a URDF, given as text or as the path of a file. Text is what starts with '<' after
+// white space. <dynamics>, visuals, collisions and everything that is not a link or a joint are
+// ignored.
+// Throws UrdfError naming the element for anything that cannot be simulated.
+Model load_urdf(const std::string& text_or_path, const UrdfOptions& options = {});
+
+}  // namespace codesign::dynamics
