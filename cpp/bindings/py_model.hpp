@@ -1,9 +1,12 @@
 #pragma once
 
-#include <utility>
+#include <pybind11/numpy.h>
 
+#include <utility>
+#include <vector>
+
+#include "dynamics/forward_dynamics.hpp"
 #include "dynamics/model.hpp"
-#include "dynamics/rigid_body.hpp"
 
 namespace codesign {
 
@@ -16,12 +19,19 @@ struct PyModel : dynamics::Model {
         kin(*this),
         velocity(*this),
         inertia(*this),
-        forces(*this) {}
+        forces(*this),
+        articulated(*this),
+        six_rows(6, dofs()),
+        three_rows(3, dofs()) {}
 
   mutable dynamics::KinematicsData kin;
   mutable dynamics::VelocityData velocity;
   mutable dynamics::InertiaData inertia;
   mutable dynamics::ForceData forces;
+  mutable dynamics::ArticulatedData articulated;
+  mutable dynamics::Matrix6Xd six_rows;
+  mutable Eigen::Matrix<double, 3, Eigen::Dynamic> three_rows;
+  mutable std::vector<dynamics::FrameWrench> wrenches;
 };
 
 }  // namespace codesign

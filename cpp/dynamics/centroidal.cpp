@@ -29,6 +29,11 @@ void center_of_mass_jacobian(const Model& model, const KinematicsData& kin,
   }
 }
 
+Vector3d center_of_mass_velocity(const Model& model, const KinematicsData& kin,
+                                 const InertiaData& inertia, const VelocityData& velocity) {
+  return centroidal_momentum(model, kin, inertia, velocity).head<3>() / model.total_mass;
+}
+
 void centroidal_momentum_matrix(const Model& model, const KinematicsData& kin,
                                 const InertiaData& inertia, Eigen::Ref<Matrix6Xd> C) {
   assert(C.cols() == model.dofs());

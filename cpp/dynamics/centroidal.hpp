@@ -17,6 +17,10 @@ void center_of_mass_jacobian(const Model& model, const KinematicsData& kin,
                              const InertiaData& inertia,
                              Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>> J);
 
+// Velocity of the centre of mass [m/s].
+Eigen::Vector3d center_of_mass_velocity(const Model& model, const KinematicsData& kin,
+                                        const InertiaData& inertia, const VelocityData& velocity);
+
 // C (6, dofs) with (l; w) = C nu: linear momentum, and angular momentum about the centre of mass.
 void centroidal_momentum_matrix(const Model& model, const KinematicsData& kin,
                                 const InertiaData& inertia, Eigen::Ref<Matrix6Xd> C);

@@ -7,7 +7,8 @@ namespace codesign::dynamics {
 
 using Eigen::Vector3d;
 
-ForceData::ForceData(const Model& model) : bodies(model.bodies.size()) {}
+ForceData::ForceData(const Model& model)
+    : accelerations(model.bodies.size()), bodies(model.bodies.size()) {}
 
 void mass_matrix(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
                  Eigen::Ref<Eigen::MatrixXd> M) {
@@ -46,24 +47,35 @@ void mass_matrix(const Model& model, const KinematicsData& kin, const InertiaDat
   }
 }
 
+ForceData::Wrench bias_wrench(const BodyPose& pose, const RigidInertia& body,
+                              const BodyVelocity& v) {
+  const Vector3d arm = body.com - pose.p;
+  Vector3d acceleration = v.linear_acceleration + v.angular_acceleration.cross(arm) +
+                          v.angular.cross(v.angular.cross(arm));
+  acceleration.z() += kGravity;
+  const Vector3d force = body.mass * acceleration;
+  return {force, body.inertia * v.angular_acceleration + v.angular.cross(body.inertia * v.angular) +
+                     arm.cross(force)};
+}
+
 namespace {
 
-// Sums the wrenches in forces from the leaves to the base and projects them on the joints.
-void project_forces(const Model& model, const KinematicsData& kin, ForceData& forces,
-                    Eigen::Ref<Eigen::VectorXd> generalized) {
+// Sums the wrenches from the leaves to the base and projects them on the joints.
+void project_wrenches(const Model& model, const KinematicsData& kin, ForceData& forces,
+                      Eigen::Ref<Eigen::VectorXd> generalized_forces) {
   for (std::size_t i = model.bodies.size() - 1; i > 0; --i) {
     const Body& body = model.bodies[i];
     const BodyPose& pose = kin.bodies[i];
     const ForceData::Wrench& wrench = forces.bodies[i];
     ForceData::Wrench& parent = forces.bodies[static_cast<std::size_t>(body.parent)];
-    generalized[model.column(body)] =
+    generalized_forces[model.column(body)] =
         pose.axis().dot(body.type == JointType::kRevolute ? wrench.moment : wrench.force);
     parent.force += wrench.force;
     parent.moment += wrench.moment + pose.offset.cross(wrench.force);
   }
   if (!model.fixed_base) {
-    generalized.head<3>() = forces.bodies[0].force;
-    generalized.segment<3>(3) = forces.bodies[0].moment;
+    generalized_forces.head<3>() = forces.bodies[0].force;
+    generalized_forces.segment<3>(3) = forces.bodies[0].moment;
   }
 }
 
@@ -73,18 +85,38 @@ void bias_forces(const Model& model, const KinematicsData& kin, const InertiaDat
                  const VelocityData& velocity, ForceData& scratch, Eigen::Ref<Eigen::VectorXd> b) {
   assert(b.size() == model.dofs());
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    const RigidInertia& body = inertia.bodies[i];
-    const BodyVelocity& v = velocity.bodies[i];
-    const Vector3d arm = body.com - kin.bodies[i].p;
-    Vector3d acceleration = v.linear_acceleration + v.angular_acceleration.cross(arm) +
-                            v.angular.cross(v.angular.cross(arm));
-    acceleration.z() += kGravity;
-    ForceData::Wrench& wrench = scratch.bodies[i];
-    wrench.force = body.mass * acceleration;
-    wrench.moment = body.inertia * v.angular_acceleration +
-                    v.angular.cross(body.inertia * v.angular) + arm.cross(wrench.force);
+    scratch.bodies[i] = bias_wrench(kin.bodies[i], inertia.bodies[i], velocity.bodies[i]);
   }
-  project_forces(model, kin, scratch, b);
+  project_wrenches(model, kin, scratch, b);
+}
+
+void inverse_dynamics(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
+                      const VelocityData& velocity, const Eigen::Ref<const Eigen::VectorXd>& nu_dot,
+                      ForceData& scratch, Eigen::Ref<Eigen::VectorXd> generalized_forces) {
+  assert(nu_dot.size() == model.dofs() && generalized_forces.size() == model.dofs());
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const Body& body = model.bodies[i];
+    const BodyPose& pose = kin.bodies[i];
+    const RigidInertia& own = inertia.bodies[i];
+    ForceData::Acceleration& a = scratch.accelerations[i];
+    a = {Vector3d::Zero(), Vector3d::Zero()};
+    if (i > 0) {
+      const ForceData::Acceleration& parent =
+          scratch.accelerations[static_cast<std::size_t>(body.parent)];
+      a = {parent.linear + parent.angular.cross(pose.offset), parent.angular};
+      const Vector3d joint = nu_dot[model.column(body)] * pose.axis();
+      (body.type == JointType::kRevolute ? a.angular : a.linear) += joint;
+    } else if (!model.fixed_base) {
+      a = {nu_dot.head<3>(), nu_dot.segment<3>(3)};
+    }
+    const Vector3d arm = own.com - pose.p;
+    const Vector3d force = own.mass * (a.linear + a.angular.cross(arm));
+    ForceData::Wrench& wrench = scratch.bodies[i];
+    wrench = bias_wrench(pose, own, velocity.bodies[i]);
+    wrench.force += force;
+    wrench.moment += own.inertia * a.angular + arm.cross(force);
+  }
+  project_wrenches(model, kin, scratch, generalized_forces);
 }
 
 void gravity_forces(const Model& model, const KinematicsData& kin, const InertiaData& inertia,

@@ -10,12 +10,16 @@
 // Nothing here allocates, apart from the constructors of the scratch structs.
 namespace codesign::dynamics {
 
-// Forces on each body and its descendants, at the body origin, world axes.
+// Scratch of the Newton-Euler recursions, per body, at the body origin, world axes.
 struct ForceData {
   explicit ForceData(const Model& model);
-  struct Wrench {
-    Eigen::Vector3d force, moment;
+  struct Acceleration {
+    Eigen::Vector3d linear, angular;  // the part linear in ν̇ [m/s²], [rad/s²]
   };
+  struct Wrench {
+    Eigen::Vector3d force, moment;  // on the body and all that hangs on it [N], [N m]
+  };
+  std::vector<Acceleration> accelerations;
   std::vector<Wrench> bodies;
 };
 
@@ -24,6 +28,10 @@ struct ForceData {
 void mass_matrix(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
                  Eigen::Ref<Eigen::MatrixXd> M);
 
+// Force and moment [N, N m] at the body origin that ν̇ = 0 takes, gravity included.
+ForceData::Wrench bias_wrench(const BodyPose& pose, const RigidInertia& body,
+                              const BodyVelocity& velocity);
+
 // b (dofs,): gravity, Coriolis and centrifugal forces. Newton-Euler recursion.
 void bias_forces(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
                  const VelocityData& velocity, ForceData& scratch, Eigen::Ref<Eigen::VectorXd> b);
@@ -31,5 +39,11 @@ void bias_forces(const Model& model, const KinematicsData& kin, const InertiaDat
 // g (dofs,): b at rest.
 void gravity_forces(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
                     Eigen::Ref<Eigen::VectorXd> g);
+
+// M ν̇ + b (dofs,): the generalized forces that cause nu_dot. Recursive Newton-Euler (same book, ch.
+// 5).
+void inverse_dynamics(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
+                      const VelocityData& velocity, const Eigen::Ref<const Eigen::VectorXd>& nu_dot,
+                      ForceData& scratch, Eigen::Ref<Eigen::VectorXd> generalized_forces);
 
 }  // namespace codesign::dynamics

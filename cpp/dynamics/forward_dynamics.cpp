@@ -1,0 +1,132 @@
+#include "dynamics/forward_dynamics.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cassert>
+
+namespace codesign::dynamics {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+ArticulatedData::ArticulatedData(const Model& model) : bodies(model.bodies.size()) {}
+
+namespace {
+
+// Each body alone: its own inertia and the wrench that ν̇ = 0 takes.
+void start_bodies(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
+                  const VelocityData& velocity, ArticulatedData& articulated) {
+  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+    const RigidInertia& own = inertia.bodies[i];
+    ArticulatedData::Body& body = articulated.bodies[i];
+    const Vector3d arm = own.com - kin.bodies[i].p;
+    const Vector3d first_moment = own.mass * arm;
+    body.linear = Vector3d::Constant(own.mass).asDiagonal();
+    body.coupling = -skew(first_moment);
+    body.angular = own.inertia - first_moment * arm.transpose();
+    body.angular.diagonal().array() += first_moment.dot(arm);
+    const ForceData::Wrench bias = bias_wrench(kin.bodies[i], own, velocity.bodies[i]);
+    body.force = bias.force;
+    body.moment = bias.moment;
+  }
+}
+
+// S(d) m, column by column.
+Matrix3d cross_columns(const Vector3d& d, const Matrix3d& m) {
+  Matrix3d result;
+  for (int i = 0; i < 3; ++i) result.col(i) = d.cross(m.col(i));
+  return result;
+}
+
+// Removes the motion that the joint leaves free, and hands the rest to the parent.
+void hand_down(const ArticulatedData::Body& body, const Vector3d& offset,
+               ArticulatedData::Body& parent) {
+  const double scale = 1.0 / body.joint_inertia;
+  const Vector3d scaled_force = scale * body.joint_force;
+  const Vector3d scaled_moment = scale * body.joint_moment;
+  const Matrix3d linear = body.linear - scaled_force * body.joint_force.transpose();
+  const Matrix3d coupling = body.coupling - scaled_force * body.joint_moment.transpose();
+  const Matrix3d angular = body.angular - scaled_moment * body.joint_moment.transpose();
+  // With the reference point moved by -d: H' = H - M S(d),  I' = I + S(d) H' + (S(d) H)ᵀ.
+  const Matrix3d moved_coupling = coupling + cross_columns(offset, linear).transpose();
+  parent.linear += linear;
+  parent.coupling += moved_coupling;
+  parent.angular +=
+      angular + cross_columns(offset, moved_coupling) + cross_columns(offset, coupling).transpose();
+  const Vector3d force = body.force + body.joint_force_left * scaled_force;
+  parent.force += force;
+  parent.moment += body.moment + body.joint_force_left * scaled_moment + offset.cross(force);
+}
+
+void accelerate_base(const Model& model, ArticulatedData::Body& base) {
+  if (model.fixed_base) {
+    base.linear_acceleration.setZero();
+    base.angular_acceleration.setZero();
+    return;
+  }
+  Matrix6d A;
+  A << base.linear, base.coupling, base.coupling.transpose(), base.angular;
+  Vector6d bias;
+  bias << base.force, base.moment;
+  const Vector6d acceleration = A.partialPivLu().solve(-bias);
+  base.linear_acceleration = acceleration.head<3>();
+  base.angular_acceleration = acceleration.tail<3>();
+}
+
+}  // namespace
+
+void forward_dynamics(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
+                      const VelocityData& velocity, const Eigen::Ref<const Eigen::VectorXd>& tau,
+                      std::span<const FrameWrench> wrenches, ArticulatedData& scratch,
+                      Eigen::Ref<Eigen::VectorXd> nu_dot) {
+  assert(tau.size() == model.joint_count() && nu_dot.size() == model.dofs());
+  start_bodies(model, kin, inertia, velocity, scratch);
+  for (const FrameWrench& external : wrenches) {
+    const Frame& frame = model.frames[static_cast<std::size_t>(external.frame)];
+    const auto index = static_cast<std::size_t>(frame.body);
+    const Vector3d arm = kin.bodies[index].R * frame.body_T_frame.p;
+    const Vector3d force = external.wrench.head<3>();
+    scratch.bodies[index].force -= force;
+    scratch.bodies[index].moment -= external.wrench.tail<3>() + arm.cross(force);
+  }
+  for (std::size_t i = model.bodies.size() - 1; i > 0; --i) {
+    const Body& body = model.bodies[i];
+    const Vector3d axis = kin.bodies[i].axis();
+    ArticulatedData::Body& a = scratch.bodies[i];
+    if (body.type == JointType::kRevolute) {
+      a.joint_force.noalias() = a.coupling * axis;
+      a.joint_moment.noalias() = a.angular * axis;
+      a.joint_inertia = axis.dot(a.joint_moment);
+      a.joint_force_left = tau[body.joint] - axis.dot(a.moment);
+    } else {
+      a.joint_force.noalias() = a.linear * axis;
+      a.joint_moment.noalias() = a.coupling.transpose() * axis;
+      a.joint_inertia = axis.dot(a.joint_force);
+      a.joint_force_left = tau[body.joint] - axis.dot(a.force);
+    }
+    hand_down(a, kin.bodies[i].offset, scratch.bodies[static_cast<std::size_t>(body.parent)]);
+  }
+  accelerate_base(model, scratch.bodies[0]);
+  if (!model.fixed_base) {
+    nu_dot.head<3>() = scratch.bodies[0].linear_acceleration;
+    nu_dot.segment<3>(3) = scratch.bodies[0].angular_acceleration;
+  }
+  for (std::size_t i = 1; i < model.bodies.size(); ++i) {
+    const Body& body = model.bodies[i];
+    const BodyPose& pose = kin.bodies[i];
+    const ArticulatedData::Body& parent = scratch.bodies[static_cast<std::size_t>(body.parent)];
+    ArticulatedData::Body& a = scratch.bodies[i];
+    a.linear_acceleration =
+        parent.linear_acceleration + parent.angular_acceleration.cross(pose.offset);
+    a.angular_acceleration = parent.angular_acceleration;
+    const double joint_acceleration =
+        (a.joint_force_left - a.joint_force.dot(a.linear_acceleration) -
+         a.joint_moment.dot(a.angular_acceleration)) /
+        a.joint_inertia;
+    nu_dot[model.column(body)] = joint_acceleration;
+    (body.type == JointType::kRevolute ? a.angular_acceleration : a.linear_acceleration) +=
+        joint_acceleration * pose.axis();
+  }
+}
+
+}  // namespace codesign::dynamics
