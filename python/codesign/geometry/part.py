@@ -1,0 +1,162 @@
+"""Parts: named parameters first, shape after; everything else (mesh, mass, files) follows from those two."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+from abc import ABC, abstractmethod
+from dataclasses import KW_ONLY, dataclass
+from typing import Any
+
+from codesign.errors import GeometryError
+from codesign.geometry.mass import MassProperties, extrapolate, mass_properties, volume_moments
+from codesign.geometry.mesh_io import write_stl
+from codesign.geometry.profile import Resolution
+from codesign.geometry.shape import Shape, face_names
+from codesign.geometry.solid import Solid, build_solid
+from codesign.geometry.surface import SurfaceMesh, surface_mesh
+
+_PARAMETER = "codesign.parameter"
+FEM_RESOLUTION = Resolution(segments=48)  # stresses do not change with more
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterInfo:
+    """Unit and valid range of a part's parameter; the bounds themselves are valid."""
+
+    unit: str
+    minimum: float
+    maximum: float
+
+
+def parameter(unit: str, minimum: float = -math.inf, maximum: float = math.inf, **field: Any) -> Any:
+    """Declares a dataclass field as a parameter of a part, with its unit and range."""
+    return dataclasses.field(metadata={_PARAMETER: ParameterInfo(unit, minimum, maximum)}, **field)
+
+
+@dataclass(frozen=True)
+class Part(ABC):
+    """Base of all parts; a subclass is a frozen dataclass with parameters and a `shape()`. Lengths in mm inside it.
+
+    name: of the part in studies and files.   density: [kg/m³].
+    """
+
+    _: KW_ONLY
+    name: str
+    density: float
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            info = field.metadata.get(_PARAMETER)
+            if info is not None:
+                self.limit(field.name, info.minimum, info.maximum)
+        if not (math.isfinite(self.density) and self.density > 0.0):
+            raise GeometryError(f"{self.name}: density = {self.density!r} kg/m³ must be positive")
+        self.check()
+
+    @abstractmethod
+    def shape(self) -> Shape:
+        """The part as an expression of the part language, in mm."""
+
+    def fem_shape(self, geometry: str = "simplified") -> Shape:
+        """The shape to be analysed: "full", or or "simplified" without what hardly matters for stress."""
+        if geometry not in ("full", "simplified"):
+            raise ValueError(f"geometry = {geometry!r}: must be 'full' or 'simplified'")
+        return self.shape()
+
+    def through_holes(self) -> int | None:
+        """Number of through holes (genus) of the shape; checked whenever it is built, unless None."""
+        return None
+
+    def check(self) -> None:  # noqa: B027 (most parts need no more than the ranges of their parameters)
+        """Refuses parameter values that give no sound part, by `limit`; called on construction."""
+
+    def limit(
+        self, parameter: str, minimum: float = -math.inf, maximum: float = math.inf, because: str = "valid range"
+    ) -> None:
+        """Raises GeometryError, naming parameter, value, limit and reason, if the parameter is outside its limits."""
+        value = getattr(self, parameter)
+        unit = next((f.metadata[_PARAMETER].unit for f in dataclasses.fields(self) if f.name == parameter), "")
+        if not math.isfinite(value):
+            raise GeometryError(f"{self.name}: {parameter} = {value!r} is not a finite number")
+        for broken, side, bound in ((value < minimum, "below", minimum), (value > maximum, "above", maximum)):
+            if broken:
+                limit = f"{side} its limit {bound:.10g} {unit} ({because})"
+                raise GeometryError(f"{self.name}: {parameter} = {value:.10g} {unit} is {limit}")
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameter values by name, in the part's units (mm, deg)."""
+        return {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if _PARAMETER in f.metadata}
+
+    def mirrored(self, axis: str, name: str) -> MirroredPart:
+        """The mirror image in the plane through the part's origin normal to "x", "y" or "z", as a part `name`."""
+        return MirroredPart(self, axis, name=name, density=self.density)
+
+    @property
+    def faces(self) -> tuple[str, ...]:
+        """Names of the named faces."""
+        return face_names(self.shape())
+
+    def solid(self, resolution: Resolution = FEM_RESOLUTION) -> Solid:
+        """Closed triangle mesh in mm.
+
+        Raises: GeometryError if it is not one body with the expected holes and all named faces.
+        """
+        return _checked(self.shape(), resolution, self.through_holes())
+
+    def surface(self, segments: int = 48) -> SurfaceMesh:
+        """Closed surface in metres with named faces; `segments`: chords on a full circle (fewer on small ones)."""
+        return surface_mesh(self.solid(Resolution(segments)))
+
+    def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> SurfaceMesh:
+        """Closed surface in metres of the shape to be analysed; `geometry` and `variant` as in `fem_shape`."""
+        return surface_mesh(_checked(self.fem_shape(geometry, **variant), Resolution(segments)))
+
+    def mass_properties(self) -> MassProperties:
+        """Mass, centre of mass and inertia of the true curved solid (relative error below 1e-5), part frame, SI."""
+        moments = []
+        for refine in (1, 2):
+            solid = self.solid(Resolution(refine=refine))
+            moments.append(volume_moments(solid.points, solid.triangles))
+        return mass_properties(extrapolate(*moments), self.density)
+
+    def write_stl(self, path: str | os.PathLike[str], chord_mm: float = 0.01) -> None:
+        """Binary STL in mm; chords stay within `chord_mm` of the true surface."""
+        values = " ".join(f"{name}={value:g}" for name, value in self.parameters.items())
+        write_stl(self.solid(Resolution(segments=4096, chord_mm=chord_mm)), path, f"{self.name} {values}")
+
+
+@dataclass(frozen=True)
+class MirroredPart(Part):
+    """The other side: a part's mirror image in the plane through its origin normal to `axis`; the same face names."""
+
+    original: Part
+    axis: str
+
+    def shape(self) -> Shape:
+        """The mirrored expression."""
+        return self.original.shape().mirrored(self.axis)
+
+    def fem_shape(self, geometry: str = "simplified", **variant: Any) -> Shape:
+        """The mirror image of the original's."""
+        return self.original.fem_shape(geometry, **variant).mirrored(self.axis)
+
+    def through_holes(self) -> int | None:
+        """As the original."""
+        return self.original.through_holes()
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Those of the original."""
+        return self.original.parameters
+
+
+def _checked(shape: Shape, resolution: Resolution, genus: int | None = None) -> Solid:
+    """Mesh of a shape on which every face that the shape names is really there."""
+    solid = build_solid(shape, resolution, genus)
+    missing = [name for name in face_names(shape) if name not in solid.names]
+    if missing:
+        raise GeometryError(f"face {missing[0]!r} has vanished: other features cover or remove it")
+    return solid

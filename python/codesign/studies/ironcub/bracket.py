@@ -1,0 +1,163 @@
+"""Jetpack bracket: two slabs, a flat base bolted to the jetpack and one bent upwards that carries a turbine.
+
+Part frame (mm): z = 0 lower face of the base, z up; x away from the robot; y = 0 symmetry plane. Used on both sides.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass
+
+import numpy as np
+
+from codesign.geometry.part import Part, parameter
+from codesign.geometry.profile import Path, Vector
+from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, box, cylinder, polar, stepped_hole, union
+from codesign.units import MILLIMETRE
+
+BASE = 15.0  # thickness of the base; the slab's is a field, see `thickness`
+HALF_WIDTH = 30.0
+LOWER_CREASE = 25.0  # x of the crease on the lower faces
+SEAT_RADIUS, SEAT_DEPTH = 23.0, 1.0
+SEAT_HOLES = polar(19.7, 10.0, -10.0, 110.0, -110.0, 130.0, -130.0)
+SCREWS = [(4.0, 10.0), (4.0, -10.0)]
+FAR = 400.0  # beyond the part, for tools that cut through
+
+
+@dataclass(frozen=True)
+class JetpackBracket(Part):
+    """Bracket with its slab bent by `angle` and the turbine seat at `distance` from the upper crease.
+
+    thickness: of the tilted slab; 15, or 14.9994 as in the published parts (`as_published`).
+    """
+
+    angle: float = parameter("deg", minimum=0.5, maximum=89.5)
+    distance: float = parameter("mm", minimum=26.0, maximum=400.0)
+    _: KW_ONLY
+    name: str = "jetpack_bracket"
+    density: float = 2800.0  # aluminium 7075, as in the published masses
+    thickness: float = 15.0
+
+    @classmethod
+    def as_published(cls, angle: float, distance: float) -> JetpackBracket:
+        """The bracket of the published data base, whose tilted slab is 14.9994 mm thick."""
+        return cls(angle, distance, thickness=14.9994)
+
+    @property
+    def _along(self) -> tuple[float, float, float]:
+        a = math.radians(self.angle)
+        return (math.cos(a), 0.0, math.sin(a))
+
+    @property
+    def _upper_crease_x(self) -> float:
+        a = math.radians(self.angle)
+        return LOWER_CREASE - BASE * math.tan(a / 2.0) + (BASE - self.thickness) / math.sin(a)
+
+    @property
+    def _seat_frame(self) -> Frame:
+        """Origin in the seat's centre on the slab's lower face, x along the slab, z from there into the slab."""
+        crease = Frame((self._upper_crease_x, 0.0, BASE), self._along, (0.0, 1.0, 0.0))
+        return crease.at(self.distance, 0.0, -self.thickness)
+
+    def through_holes(self) -> int:
+        """Six holes of the seat and two screws; the dowel hole is blind."""
+        return 8
+
+    def shape(self) -> Shape:
+        """The part as it is made."""
+        return self._build()
+
+    def fem_shape(self, geometry: str = "simplified", support: str = "published", half: bool = True) -> Shape:
+        """The part, or its half y >= 0 with the face `symmetry`, as it is analysed.
+
+        geometry: "full"; "simplified" without pocket, holes and dowel hole, where `seat` is the slab's whole lower face
+        and the load acts on the disc `seat_radius` about `seat_centre`. support: "published" names both base faces up
+        to the creases `mount`; "bolted" names the contact with the jetpack `pad` and the screws' `screw_seat` instead.
+        """
+        if geometry not in ("full", "simplified") or support not in ("published", "bolted"):
+            raise ValueError(f"geometry = {geometry!r}, support = {support!r}: no such variant")
+        return self._build(
+            seat=geometry == "full", screws=geometry == "full" or support == "bolted", dowel=geometry == "full",
+            bolted=support == "bolted", half=half,
+        )  # fmt: skip
+
+    def _build(
+        self, seat: bool = True, screws: bool = True, dowel: bool = True, bolted: bool = False, half: bool = False
+    ) -> Shape:
+        shape = self._slabs("" if bolted else "mount", "" if seat else "seat")
+        if bolted:
+            pad = box((-20.0, -20.0, 0.0), (min(20.0, self._upper_crease_x), 20.0, BASE), z1="pad")
+            shape = union(shape - pad, pad)
+        if seat:
+            for tool in self._seat_tools():
+                shape = shape - tool
+        if screws:
+            screw = stepped_hole((7.0, -1.0, 9.0), (4.2, 9.0, BASE + 1.0), shoulder_face="screw_seat")
+            shape = shape - at_points(screw, SCREWS)
+        if dowel:
+            shape = shape - cylinder(2.0, BASE - 7.5, BASE + 1.0).moved(-10.0)
+        if half:
+            shape = shape - box((-FAR, -FAR, -FAR), (2.0 * FAR, 0.0, 2.0 * FAR), y1="symmetry")
+        return shape
+
+    def _slabs(self, mount: str, lower_face: str) -> Shape:
+        """Base and tilted slab from one side profile, with the neck and the round free end cut out."""
+        slab = self._seat_frame
+        tip = HALF_WIDTH + 5.0
+        (x0, _, z0), (x1, _, z1) = slab.point(tip, 0.0), slab.point(tip, 0.0, self.thickness)
+        side = (
+            Path(-20.0, 0.0).line(LOWER_CREASE, 0.0, face=mount)
+            .line(x0, z0, face=lower_face).line(x1, z1)
+            .line(self._upper_crease_x, BASE).line(-20.0, BASE, face=mount).close()
+        )  # fmt: skip
+        body = Extrusion(side, -HALF_WIDTH, HALF_WIDTH, Frame(x=(1.0, 0.0, 0.0), y=(0.0, 0.0, 1.0)))
+        neck = (
+            Path(-21.0, 20.0).line(15.0, 20.0).arc(20.0, 25.0, centre=(15.0, 25.0)).line(20.0, 31.0)
+            .line(-21.0, 31.0).close()
+        )  # fmt: skip
+        beside_neck = Extrusion(neck, -1.0, BASE)
+        r = HALF_WIDTH
+        round_end = (
+            Path(0.0, r).arc(0.0, -r, centre=(0.0, 0.0), turn="right").line(0.0, -r - 1.0)
+            .line(tip + 1.0, -r - 1.0).line(tip + 1.0, r + 1.0).line(0.0, r + 1.0).close()
+        )  # fmt: skip
+        beyond_end = Extrusion(round_end, -1.0, self.thickness + 1.0, slab)
+        return body - beside_neck - beside_neck.mirrored("y") - beyond_end
+
+    def _seat_tools(self) -> list[Shape]:
+        """Pocket in the lower face and six counterbored holes around its centre."""
+        top = self.thickness
+        hole = stepped_hole((1.6, 0.0, top - 3.4), (3.0, top - 3.4, top + 1.0))
+        pocket = cylinder(SEAT_RADIUS, -1.0, SEAT_DEPTH, end_face="seat")
+        return [tool.placed(self._seat_frame) for tool in (pocket, at_points(hole, SEAT_HOLES))]
+
+    # What a load case needs to know, in metres and part axes.
+
+    seat_radius = SEAT_RADIUS * MILLIMETRE
+
+    @property
+    def seat_centre(self) -> Vector:
+        """(3,) centre of the seat on the slab's lower face [m]; the pocket's floor is 1 mm further along the normal."""
+        return np.array(self._seat_frame.origin) * MILLIMETRE
+
+    @property
+    def slab_direction(self) -> Vector:
+        """(3,) unit vector along the slab, from the crease to the free end."""
+        return np.array(self._along)
+
+    @property
+    def slab_normal(self) -> Vector:
+        """(3,) unit vector from the slab's lower face, which carries the turbine, to its upper face."""
+        return np.array(self._seat_frame.z)
+
+    @property
+    def lower_crease(self) -> Vector:
+        """(3,) point of the lower crease in the plane of symmetry [m]; the crease is parallel to y."""
+        return np.array([LOWER_CREASE, 0.0, 0.0]) * MILLIMETRE
+
+    @property
+    def upper_crease(self) -> Vector:
+        """(3,) point of the upper crease in the plane of symmetry [m]; the crease is parallel to y."""
+        return np.array([self._upper_crease_x, 0.0, BASE]) * MILLIMETRE
+
+    half_width = HALF_WIDTH * MILLIMETRE

@@ -1,0 +1,197 @@
+"""Forearm jet support: wrist stub, flange, rod, collar and a clamp body of hub and ring, in one piece.
+
+Part frame (mm) of the left part: the rod's axis is parallel to x through y = 15, z = 0; distal is -x; the ring hangs
+towards -z. The right part is the mirror image in z.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass
+
+import numpy as np
+
+from codesign.geometry.part import Part, parameter
+from codesign.geometry.profile import Path, Profile, Vector, circle
+from codesign.geometry.shape import (
+    Extrusion,
+    Frame,
+    Revolution,
+    Shape,
+    Triple,
+    at_points,
+    box,
+    cylinder,
+    polar,
+    union,
+)
+from codesign.units import MILLIMETRE
+
+AXIS: Triple = (0.0, 15.0, 0.0)  # a point of the rod's axis
+ALONG = Frame(AXIS, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))  # for revolutions: (x, distance from the axis)
+ACROSS = Frame(AXIS, (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # for outlines: (y', z), extruded along x
+MOUNT_X, ROD_X, RELIEF_X = -6.0, -18.0, -23.0
+ROD_RADIUS, COLLAR_RADIUS, SPIGOT_RADIUS = 9.0, 22.5, 12.5
+FLANGE_RADIUS, FLANGE_HALF_WIDTH, FLANGE_FOOT = 18.0, 11.45, -15.0
+STUB_RADIUS, GROOVE_RADIUS = math.sqrt(63.0), 5.937
+RELIEF_FLOOR = -6.0
+HUB_RADIUS, RING_RADIUS, BORE_RADIUS, BLEND_RADIUS = 27.5, 65.9, 60.9, 25.0
+FLANGE_HOLES = ((2.0, polar(11.7, 135.0, -135.0)), (1.25, polar(12.5, 160.0, -160.0)))
+MINIMUM_WALL = 2.0
+
+
+@dataclass(frozen=True)
+class ForearmJetSupport(Part):
+    """Left forearm support with the ring's axis `offset` below the rod and a rod of `length`.
+
+    fillet, relief_fillet: radii at the rod's two ends and in the corners of the screw-head relief; 0 for the sharp
+    corners of the published part (`as_published`).
+    """
+
+    offset: float = parameter("mm", minimum=50.0, maximum=140.0)
+    length: float = parameter("mm", minimum=12.0, maximum=500.0)
+    _: KW_ONLY
+    name: str = "forearm_support"
+    density: float = 4410.0  # titanium alloy, as in the published masses
+    fillet: float = 2.0
+    relief_fillet: float = 1.5
+
+    @classmethod
+    def as_published(cls, offset: float, length: float) -> ForearmJetSupport:
+        """The part of the published data base: sharp corners at the rod."""
+        return cls(offset, length, fillet=0.0, relief_fillet=0.0)
+
+    def check(self) -> None:
+        """Walls between bore and spigot, and of the neck between hub and ring."""
+        smallest = BORE_RADIUS + SPIGOT_RADIUS + MINIMUM_WALL
+        self.limit("offset", minimum=smallest, because=f"{MINIMUM_WALL:g} mm between the ring's bore and the spigot")
+        neck = (HUB_RADIUS + BLEND_RADIUS, RING_RADIUS + BLEND_RADIUS, BLEND_RADIUS + MINIMUM_WALL)
+        largest = math.sqrt(neck[0] ** 2 - neck[2] ** 2) + math.sqrt(neck[1] ** 2 - neck[2] ** 2)
+        self.limit("offset", maximum=largest, because=f"{2 * MINIMUM_WALL:g} mm wall between hub and ring")
+
+    @property
+    def _clamp_x(self) -> float:
+        return -(34.0 + self.length)
+
+    @property
+    def _seat_x(self) -> float:
+        return -(57.9 + self.length)
+
+    def through_holes(self) -> int:
+        """Four holes in the flange and the ring's bore."""
+        return 5
+
+    def shape(self) -> Shape:
+        """The part as it is made."""
+        return self._build(stub=True, spigot=True)
+
+    def fem_shape(self, geometry: str = "simplified") -> Shape:
+        """The part as it is analysed: "full", or "simplified" without stub and spigot; faces `mount` and `seat`."""
+        if geometry not in ("full", "simplified"):
+            raise ValueError(f"geometry = {geometry!r}: must be 'full' or 'simplified'")
+        return self._build(stub=geometry == "full", spigot=geometry == "full")
+
+    def _build(self, stub: bool, spigot: bool) -> Shape:
+        turned = self._turned(stub, spigot) - self._relief()
+        if stub:
+            flat = box((-8.0, 6.856, -4.0), (7.0, 10.0, 4.0), y0="mount", z0="mount", z1="mount").moved(*AXIS)
+            turned = turned - flat - flat.rotated("x", 180.0, about=AXIS)
+        clamp = Extrusion(self.clamp_outline(), self._seat_x, self._clamp_x, ACROSS, start_face="seat")
+        shape = union(turned, self._flange(), clamp)
+        for radius, centres in FLANGE_HOLES:
+            hole = cylinder(radius, RELIEF_X, -5.0)
+            shape = shape - at_points(hole, centres).placed(ACROSS)
+        return shape
+
+    def _turned(self, stub: bool, spigot: bool) -> Shape:
+        """Everything round about the axis in one profile: stub, rod with its end fillets, collar and spigot."""
+        r, f, collar_x = ROD_RADIUS, self.fillet, ROD_X - self.length
+        end = self._seat_x - 1.1 if spigot else self._clamp_x
+        path = Path(end, 0.0)
+        if stub:  # groove and cone; the stub starts inside the flange
+            path = path.line(6.0, 0.0).line(6.0, STUB_RADIUS, face="mount").line(1.5, STUB_RADIUS, face="mount")
+            path = path.line(1.5, GROOVE_RADIUS, face="mount").line(-1.5, GROOVE_RADIUS, face="mount")
+            path = path.line(-1.5, 8.0, face="mount").line(MOUNT_X, STUB_RADIUS, face="mount").line(-10.0, STUB_RADIUS)
+        else:
+            path = path.line(-10.0, 0.0)
+        path = path.line(-10.0, r + f)
+        if f > 0.0:
+            path = path.line(ROD_X, r + f).arc(ROD_X - f, r, centre=(ROD_X - f, r + f), turn="right")
+            path = path.line(collar_x + f, r).arc(collar_x, r + f, centre=(collar_x + f, r + f), turn="right")
+        else:
+            path = path.line(collar_x, r)
+        path = path.line(collar_x, COLLAR_RADIUS).line(self._clamp_x, COLLAR_RADIUS)
+        if spigot:
+            path = path.line(self._clamp_x, SPIGOT_RADIUS).line(end, SPIGOT_RADIUS)
+        return Revolution(path.close(), ALONG)
+
+    def _relief(self) -> Shape:
+        """Tool that makes room for the heads of the flange's screws beside the rod."""
+        outline = (
+            Path(RELIEF_X, -30.0).line(ROD_X, -30.0).line(ROD_X, RELIEF_FLOOR, radius=self.relief_fillet)
+            .line(RELIEF_X, RELIEF_FLOOR, radius=self.relief_fillet).close()
+        )  # fmt: skip
+        return Extrusion(outline, -30.0, 30.0, ALONG)
+
+    def _flange(self) -> Shape:
+        radius, half, foot = FLANGE_RADIUS, FLANGE_HALF_WIDTH, FLANGE_FOOT
+        side, low = math.sqrt(radius**2 - half**2), math.sqrt(radius**2 - foot**2)
+        centre = (0.0, 0.0)
+        outline = (
+            Path(foot, -low).arc(-side, -half, centre=centre).line(side, -half).arc(side, half, centre=centre)
+            .line(-side, half).arc(foot, low, centre=centre).close()
+        )  # fmt: skip
+        plate = Extrusion(outline, ROD_X, MOUNT_X, ACROSS, end_face="mount")
+        edge_radius = 2.0  # both long edges, towards the mounting face
+        corner = (
+            Path(half, MOUNT_X - edge_radius).line(half + 1.0, MOUNT_X - edge_radius).line(half + 1.0, MOUNT_X + 1.0)
+            .line(half - edge_radius, MOUNT_X + 1.0).line(half - edge_radius, MOUNT_X)
+            .arc(half, MOUNT_X - edge_radius, centre=(half - edge_radius, MOUNT_X - edge_radius), turn="right").close()
+        )  # fmt: skip
+        rounding = Extrusion(corner, -30.0, 30.0, Frame(AXIS, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)))
+        return plate - rounding - rounding.mirrored("z")
+
+    def clamp_outline(self) -> Profile:
+        """Outline of hub and ring in (y', z), joined by arcs tangent to both, with the ring's bore."""
+        hub, ring, drop = HUB_RADIUS + BLEND_RADIUS, RING_RADIUS + BLEND_RADIUS, self.offset
+        z = (ring**2 - hub**2 - drop**2) / (2.0 * drop)
+        blend = np.array([math.sqrt(hub**2 - z**2), z])
+        centre = np.array([0.0, -drop])
+        on_hub = HUB_RADIUS / hub * blend
+        on_ring = centre + RING_RADIUS / ring * (blend - centre)
+        (hy, hz), (ry, rz), (by, bz) = on_hub.tolist(), on_ring.tolist(), blend.tolist()
+        outline = (
+            Path(hy, hz).arc(-hy, hz, centre=(0.0, 0.0))
+            .arc(-ry, rz, centre=(-by, bz), turn="right")
+            .arc(ry, rz, centre=(0.0, -drop))
+            .arc(hy, hz, centre=(by, bz), turn="right").close()
+        )  # fmt: skip
+        return outline.without(circle(0.0, -drop, BORE_RADIUS))
+
+    # What a load case needs to know, in metres and part axes.
+
+    @property
+    def seat_area(self) -> float:
+        """Area of the distal face around the spigot [m²], exact."""
+        return (self.clamp_outline().area - math.pi * SPIGOT_RADIUS**2) * MILLIMETRE**2
+
+    @property
+    def seat_centroid(self) -> Vector:
+        """(3,) centroid of the distal face around the spigot [m], exact."""
+        outline = self.clamp_outline()
+        area = outline.area - math.pi * SPIGOT_RADIUS**2  # the spigot is centred on the axis: no first moment
+        y, z = (moment / area for moment in outline.first_moments)
+        return np.array([self._seat_x, AXIS[1] + y, z]) * MILLIMETRE
+
+    @property
+    def turbine_axis(self) -> Vector:
+        """(3,) point of the turbine's axis, which is parallel to x, in the plane of the distal face [m]."""
+        return np.array([self._seat_x, AXIS[1], -self.offset]) * MILLIMETRE
+
+    @property
+    def rod_ends(self) -> tuple[Vector, Vector]:
+        """Points of the rod's axis at the flange and at the collar [m]; the fillets lie between them."""
+        start, end = ([x, AXIS[1], AXIS[2]] for x in (ROD_X, ROD_X - self.length))
+        return np.array(start) * MILLIMETRE, np.array(end) * MILLIMETRE
+
+    rod_radius = ROD_RADIUS * MILLIMETRE
