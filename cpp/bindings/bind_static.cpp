@@ -1,9 +1,134 @@
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
 #include "bindings/bindings.hpp"
+#include "fem/static_solver.hpp"
+#include "fem/tet_topology.hpp"
 
 namespace py = pybind11;
+using py::literals::operator""_a;
 
 namespace codesign {
 
-void bind_static(py::module_& m) { (void)m; }
+namespace {
+
+using namespace fem;  // NOLINT: the whole file binds this namespace
+
+void bind_material(py::module_& m) {
+  py::class_<Material>(m, "Material", "Linear elastic, isotropic material.")
+      .def(py::init([](std::string name, double young_modulus, double poisson_ratio, double density,
+                       double yield_strength) {
+             Material material{std::move(name), young_modulus, poisson_ratio, density,
+                               yield_strength};
+             check_material(material);
+             return material;
+           }),
+           "name"_a, "young_modulus"_a, "poisson_ratio"_a, "density"_a = 0.0,
+           "yield_strength"_a = 0.0)
+      .def_readonly("name", &Material::name)
+      .def_readonly("young_modulus", &Material::young_modulus, "Pa")
+      .def_readonly("poisson_ratio", &Material::poisson_ratio)
+      .def_readonly("density", &Material::density, "kg/m3")
+      .def_readonly("yield_strength", &Material::yield_strength, "Pa")
+      .def("__repr__", [](const Material& material) {
+        return py::str(
+                   "Material({!r}, young_modulus={!r}, poisson_ratio={!r}, density={!r}, "
+                   "yield_strength={!r})")
+            .format(material.name, material.young_modulus, material.poisson_ratio, material.density,
+                    material.yield_strength);
+      });
+}
+
+void bind_selection(py::module_& m) {
+  py::class_<Selection>(m, "Selection")
+      .def(py::init<std::vector<std::string>, std::vector<int>, std::vector<int>>(),
+           "faces"_a = std::vector<std::string>{}, "triangles"_a = std::vector<int>{},
+           "nodes"_a = std::vector<int>{})
+      .def_readonly("faces", &Selection::faces)
+      .def_readonly("triangles", &Selection::triangles)
+      .def_readonly("nodes", &Selection::nodes);
+  m.def("selected_triangles", &selected_triangles, "mesh"_a, "selection"_a,
+        "Rows of mesh.boundary that a selection holds, sorted.");
+  m.def("selected_nodes", &selected_nodes, "mesh"_a, "selection"_a,
+        "Nodes that a selection holds, those of its faces included, sorted.");
+  m.def("triangles_near", &triangles_near, "mesh"_a, "point"_a, "max_bend"_a);
+  m.def("triangles_in_box", &triangles_in_box, "mesh"_a, "lower"_a, "upper"_a);
+  m.def("triangles_with_normal", &triangles_with_normal, "mesh"_a, "normal"_a, "angle"_a);
+  m.def("face_area", &face_area, "mesh"_a, "triangles"_a, "Area of curved boundary faces, m2.");
+}
+
+void bind_supports_and_loads(py::module_& m) {
+  py::class_<Support>(m, "Support")
+      .def(py::init<Selection, std::array<bool, 3>, Points, bool>(), "where"_a,
+           "fixed"_a = std::array<bool, 3>{true, true, true}, "displacement"_a = Points(0, 3),
+           "symmetry"_a = false);
+  py::class_<Force>(m, "Force").def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "force"_a);
+  py::class_<Traction>(m, "Traction")
+      .def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "traction"_a);
+  py::class_<Pressure>(m, "Pressure").def(py::init<Selection, double>(), "where"_a, "pressure"_a);
+  py::class_<Disc>(m, "Disc").def(py::init<Eigen::Vector3d, Eigen::Vector3d, double>(), "center"_a,
+                                  "axis"_a, "radius"_a);
+  py::class_<AffineTraction>(m, "AffineTraction")
+      .def(py::init<Selection, Eigen::Vector3d, Eigen::Vector3d, Eigen::Vector3d,
+                    std::optional<Disc>>(),
+           "where"_a, "force"_a, "point"_a, "moment"_a, "region"_a = std::nullopt);
+  py::class_<Acceleration>(m, "Acceleration").def(py::init<Eigen::Vector3d>(), "acceleration"_a);
+  py::class_<BodyForce>(m, "BodyForce").def(py::init<Points>(), "force"_a);
+  m.def("load_vector", &load_vector, "mesh"_a, "material"_a, "loads"_a,
+        py::call_guard<py::gil_scoped_release>());
+}
+
+void bind_tet_mesh(py::module_& m) {
+  py::class_<TetMesh>(m, "TetMesh", "Mesh of ten-node tetrahedra with named boundary faces.")
+      .def(py::init(
+               [](const Points& nodes, const Tets10& tets) { return make_tet_mesh(nodes, tets); }),
+           "nodes"_a, "tets"_a)
+      .def(py::init(
+               [](const Points& nodes, const Tets4& tets) { return make_tet_mesh(nodes, tets); }),
+           "nodes"_a, "tets"_a)
+      .def_readonly("nodes", &TetMesh::nodes, "(n, 3) m")
+      .def_readonly("tets", &TetMesh::tets, "(m, 10); mid-edge nodes on 01 12 02 03 13 23")
+      .def_readonly("boundary", &TetMesh::boundary, "(b, 6); mid-edge nodes on 01 12 20")
+      .def_readonly("boundary_face", &TetMesh::boundary_face, "(b) index into face_names")
+      .def_readonly("face_names", &TetMesh::face_names);
+}
+
+void bind_result(py::module_& m) {
+  py::class_<StaticSettings>(m, "StaticSettings")
+      .def(py::init<>())
+      .def_readwrite("exclusion_distance", &StaticSettings::exclusion_distance)
+      .def_readwrite("stress_volume", &StaticSettings::stress_volume)
+      .def_readwrite("copies", &StaticSettings::copies)
+      .def_readwrite("residual_tolerance", &StaticSettings::residual_tolerance);
+  py::class_<StaticResult>(m, "StaticResult", "Displacement, stress and safety factor of a part.")
+      .def_readonly("displacement", &StaticResult::displacement, "(n, 3) m")
+      .def_readonly("stress", &StaticResult::stress, "(n, 6) Pa: xx yy zz xy yz zx")
+      .def_readonly("von_mises", &StaticResult::von_mises, "(n) Pa")
+      .def_readonly("reactions", &StaticResult::reactions, "(n, 3) N, supports on the part")
+      .def_readonly("support_forces", &StaticResult::support_forces, "(supports, 3) N")
+      .def_readonly("work", &StaticResult::work, "J, load times displacement")
+      .def_readonly("strain_energy", &StaticResult::strain_energy, "J")
+      .def_readonly("max_displacement", &StaticResult::max_displacement, "m")
+      .def_readonly("peak_stress", &StaticResult::peak_stress, "Pa")
+      .def_readonly("peak_position", &StaticResult::peak_position, "(3) m")
+      .def_readonly("stress_50", &StaticResult::stress_50, "Pa")
+      .def_readonly("safety_factor", &StaticResult::safety_factor)
+      .def_readonly("residual", &StaticResult::residual, "relative, over the free components")
+      .def_readonly("equations", &StaticResult::equations);
+  py::class_<StaticSystem>(m, "StaticSystem", "A model factorised once for many load cases.")
+      .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings>(), "mesh"_a,
+           "material"_a, "supports"_a, "settings"_a, py::call_guard<py::gil_scoped_release>())
+      .def("solve", &StaticSystem::solve, "loads"_a, py::call_guard<py::gil_scoped_release>());
+}
+
+}  // namespace
+
+void bind_static(py::module_& m) {
+  bind_material(m);
+  bind_tet_mesh(m);
+  bind_selection(m);
+  bind_supports_and_loads(m);
+  bind_result(m);
+}
 
 }  // namespace codesign

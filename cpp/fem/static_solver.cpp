@@ -1,0 +1,170 @@
+#include "fem/static_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "errors.hpp"
+#include "fem/cholesky.hpp"
+#include "fem/ordering.hpp"
+#include "fem/rigid_motions.hpp"
+#include "fem/stiffness.hpp"
+
+namespace codesign::fem {
+
+namespace {
+
+constexpr int kMaxRefinements = 3;
+
+void check_mesh(const TetMesh& mesh) {
+  if (mesh.tets.rows() == 0) throw MeshError("the mesh has no elements");
+  if (!mesh.nodes.allFinite()) throw MeshError("the mesh has nodes that are not finite");
+  if (mesh.tets.minCoeff() < 0 || mesh.tets.maxCoeff() >= mesh.nodes.rows() ||
+      (mesh.boundary.size() > 0 &&
+       (mesh.boundary.minCoeff() < 0 || mesh.boundary.maxCoeff() >= mesh.nodes.rows()))) {
+    throw MeshError("the mesh refers to nodes that do not exist");
+  }
+}
+
+void check_settings(const StaticSettings& s) {
+  if (!(s.exclusion_distance >= 0)) throw std::invalid_argument("exclusion_distance must be >= 0");
+  if (!(s.stress_volume > 0)) throw std::invalid_argument("stress_volume must be > 0");
+  if (s.copies < 1) throw std::invalid_argument("copies must be >= 1");
+  if (!(s.residual_tolerance > 0)) throw std::invalid_argument("residual_tolerance must be > 0");
+}
+
+void require_held(const TetMesh& mesh, const Constraints& constraints) {
+  const std::vector<std::string> motions = free_rigid_motions(mesh, constraints);
+  if (motions.empty()) return;
+  std::string text = "the supports leave the part free to move: ";
+  for (std::size_t i = 0; i < motions.size(); ++i) text += (i == 0 ? "" : "; ") + motions[i];
+  throw SolverError(text);
+}
+
+}  // namespace
+
+struct StaticSystem::Data {
+  TetMesh mesh;
+  Material material;
+  std::vector<Support> supports;
+  StaticSettings settings;
+  Constraints constraints;
+  NodePattern pattern;
+  std::unique_ptr<CholeskyFactor> factor;
+  std::vector<int> clamped;
+
+  Eigen::VectorXd gather(const Eigen::VectorXd& nodal) const {
+    Eigen::VectorXd result(pattern.equations());
+    for (std::size_t d = 0; d < pattern.equation.size(); ++d) {
+      if (pattern.equation[d] >= 0) result[pattern.equation[d]] = nodal[static_cast<int>(d)];
+    }
+    return result;
+  }
+
+  void add_free(const Eigen::VectorXd& free, Eigen::VectorXd& nodal) const {
+    for (std::size_t d = 0; d < pattern.equation.size(); ++d) {
+      if (pattern.equation[d] >= 0) nodal[static_cast<int>(d)] += free[pattern.equation[d]];
+    }
+  }
+
+  // Displacement with iterative refinement; internal is left as its internal forces.
+  Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal,
+                           double& residual) const {
+    Eigen::VectorXd u = constraints.displacement;
+    internal = internal_forces(mesh, material, u);
+    const double scale = std::max(load.norm(), internal.norm());
+    residual = 0.0;
+    if (scale == 0.0 || pattern.equations() == 0) return u;
+    for (int step = 0; step <= kMaxRefinements; ++step) {
+      const Eigen::VectorXd correction = factor->solve(gather(load - internal));
+      add_free(correction, u);
+      internal = internal_forces(mesh, material, u);
+      residual = gather(load - internal).norm() / scale;
+      if (residual <= settings.residual_tolerance) return u;
+    }
+    std::ostringstream text;
+    text << "the relative residual " << residual << " misses the tolerance "
+         << settings.residual_tolerance << ": the model is too badly conditioned";
+    throw SolverError(text.str());
+  }
+
+  void read_forces(const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
+                   StaticResult& r) const {
+    r.reactions = Points::Zero(mesh.nodes.rows(), 3);
+    r.support_forces = Points::Zero(static_cast<Eigen::Index>(supports.size()), 3);
+    for (std::size_t d = 0; d < constraints.support.size(); ++d) {
+      const int support = constraints.support[d];
+      if (support < 0) continue;
+      const Eigen::Index i = static_cast<Eigen::Index>(d);
+      r.reactions(i / 3, i % 3) = internal[i] - load[i];
+      r.support_forces(support, i % 3) += internal[i] - load[i];
+    }
+  }
+
+  void read_stress(const std::vector<Load>& loads, const Eigen::VectorXd& u,
+                   StaticResult& r) const {
+    const PointStresses points = point_stresses(mesh, material, u);
+    r.stress = recover_stress(mesh, points);
+    r.von_mises = codesign::fem::von_mises(r.stress);
+    const double distance = settings.exclusion_distance;
+    r.stress_50 =
+        stress_of_volume(mesh, points, clamped, distance, settings.stress_volume / settings.copies);
+    const PeakStress peak = codesign::fem::peak_stress(
+        mesh, r.stress, {clamped, loaded_triangles(mesh, loads), distance});
+    r.peak_stress = peak.value;
+    r.peak_position = peak.position;
+    r.safety_factor = peak.value > 0 ? material.yield_strength / peak.value
+                                     : std::numeric_limits<double>::infinity();
+  }
+};
+
+StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
+                           StaticSettings settings)
+    : data_(std::make_unique<Data>()) {
+  check_mesh(mesh);
+  check_material(material);
+  check_settings(settings);
+  Data& d = *data_;
+  d.mesh = std::move(mesh);
+  d.material = std::move(material);
+  d.supports = std::move(supports);
+  d.settings = settings;
+  d.constraints = constrain(d.mesh, d.supports);
+  require_held(d.mesh, d.constraints);
+  d.clamped = clamped_triangles(d.mesh, d.supports);
+  d.pattern = order_nodes(d.mesh, d.constraints);
+  if (d.pattern.equations() == 0) return;
+  const LowerMatrix stiffness = assemble_stiffness(d.mesh, d.material, d.pattern);
+  d.factor = std::make_unique<CholeskyFactor>(d.pattern, stiffness);
+}
+
+StaticSystem::~StaticSystem() = default;
+StaticSystem::StaticSystem(StaticSystem&&) noexcept = default;
+StaticSystem& StaticSystem::operator=(StaticSystem&&) noexcept = default;
+
+const TetMesh& StaticSystem::mesh() const { return data_->mesh; }
+
+StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
+  const Data& d = *data_;
+  const Eigen::VectorXd load = load_vector(d.mesh, d.material, loads);
+  StaticResult r;
+  Eigen::VectorXd internal;
+  const Eigen::VectorXd u = d.displace(load, internal, r.residual);
+  r.displacement = Eigen::Map<const Points>(u.data(), d.mesh.nodes.rows(), 3);
+  r.max_displacement = r.displacement.rowwise().norm().maxCoeff();
+  r.work = d.settings.copies * load.dot(u);
+  r.strain_energy = 0.5 * d.settings.copies * internal.dot(u);
+  r.equations = d.pattern.equations();
+  d.read_forces(load, internal, r);
+  d.read_stress(loads, u, r);
+  return r;
+}
+
+StaticResult solve_static(const StaticModel& model) {
+  return StaticSystem(model.mesh, model.material, model.supports, model.settings)
+      .solve(model.loads);
+}
+
+}  // namespace codesign::fem

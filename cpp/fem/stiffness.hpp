@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fem/material.hpp"
+#include "fem/ordering.hpp"
+#include "fem/tet10.hpp"
+#include "fem/tet_mesh.hpp"
+
+namespace codesign::fem {
+
+using ElementMatrix = Eigen::Matrix<double, 30, 30>;  // equation 3 * local node + component
+
+// Stiffness of one element with full integration, N/m.
+void element_stiffness(const TetNodes& x, double lambda, double mu, ElementMatrix& k);
+
+// Lower triangle of a symmetric matrix in compressed columns, rows ascending.
+struct LowerMatrix {
+  std::vector<int> start, row;
+  std::vector<double> value;
+
+  int size() const { return static_cast<int>(start.size()) - 1; }
+};
+
+// y = A x
+Eigen::VectorXd multiply(const LowerMatrix& a, const Eigen::VectorXd& x);
+
+// Stiffness of the free components in elimination order. Throws MeshError if an element is
+// inverted (non-positive Jacobian at an integration point).
+LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
+                               const NodePattern& pattern);
+
+// Internal nodal forces of a displacement field (3 n): integral of Bᵀ sigma over all elements, from
+// stresses instead of matrices.
+Eigen::VectorXd internal_forces(const TetMesh& mesh, const Material& material,
+                                const Eigen::VectorXd& displacement);
+
+}  // namespace codesign::fem

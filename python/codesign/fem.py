@@ -1,0 +1,47 @@
+"""Finite elements: meshes, supports, loads, stress and safety factor. SI units throughout."""
+
+from codesign.fem_model import (
+    Acceleration,
+    AffineTraction,
+    BodyForce,
+    Disc,
+    Force,
+    Load,
+    Material,
+    Pressure,
+    Selection,
+    Support,
+    TetMesh,
+    Traction,
+    faces_in_box,
+    faces_near,
+    faces_with_normal,
+    select_faces,
+    select_nodes,
+    select_union,
+)
+from codesign.fem_static import StaticResult, StaticSystem, solve_static
+
+__all__ = [
+    "Acceleration",
+    "AffineTraction",
+    "BodyForce",
+    "Disc",
+    "Force",
+    "Load",
+    "Material",
+    "Pressure",
+    "Selection",
+    "StaticResult",
+    "StaticSystem",
+    "Support",
+    "TetMesh",
+    "Traction",
+    "faces_in_box",
+    "faces_near",
+    "faces_with_normal",
+    "select_faces",
+    "select_nodes",
+    "select_union",
+    "solve_static",
+]

@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+
+from codesign import errors, fem
+from fem_meshes import box_mesh
+
+STEEL = fem.Material("steel", young_modulus=210e9, poisson_ratio=0.3, density=7850.0, yield_strength=250e6)
+
+
+def bar(divisions=(6, 2, 2), size=(0.1, 0.02, 0.02)):
+    return box_mesh(divisions, lambda x: x * np.array(size))
+
+
+ROOT = fem.faces_with_normal([-1, 0, 0])
+TIP = fem.faces_with_normal([1, 0, 0])
+
+
+def test_bar_under_tension_has_the_uniform_stress():
+    mesh = bar()
+    supports = [
+        fem.Support(ROOT, axes="x", symmetry=True),
+        fem.Support(fem.faces_with_normal([0, -1, 0]), axes="y", symmetry=True),
+        fem.Support(fem.faces_with_normal([0, 0, -1]), axes="z", symmetry=True),
+    ]
+    result = fem.solve_static(mesh, STEEL, supports, [fem.Force(TIP, [1000.0, 0, 0])], exclusion_distance=0.0)
+    stress = 1000.0 / 4e-4
+    assert np.allclose(result.stress, stress * np.array([1, 0, 0, 0, 0, 0]), atol=1e-9 * stress)
+    assert result.peak_stress == pytest.approx(stress, rel=1e-9)
+    assert result.stress_50 == pytest.approx(stress, rel=1e-9)
+    assert result.safety_factor == pytest.approx(250e6 / stress, rel=1e-9)
+    assert result.displacement[:, 0].max() == pytest.approx(stress * 0.1 / 210e9, rel=1e-9)
+
+
+def test_reactions_balance_the_loads_and_the_energy_is_half_the_work():
+    mesh = bar()
+    loads = [fem.Force(TIP, [10.0, -20.0, 30.0]), fem.Acceleration([0, 0, -9.81]), fem.Pressure(TIP, 1e5)]
+    result = fem.solve_static(mesh, STEEL, [fem.Support(ROOT)], loads)
+    net = np.array([10.0 - 1e5 * 4e-4, -20.0, 30.0 - 9.81 * 7850 * 4e-5])
+    assert np.allclose(result.reactions.sum(axis=0), -net, rtol=1e-9)
+    assert np.allclose(result.support_forces[0], -net, rtol=1e-9)
+    assert result.work == pytest.approx(2 * result.strain_energy, rel=1e-9)
+    assert result.residual <= 1e-9
+
+
+@pytest.mark.parametrize(
+    ("supports", "words"),
+    [
+        ([], ["translation along x", "translation along y", "translation along z", "rotation about x"]),
+        ([fem.Support(ROOT, axes="x")], ["translation along y", "translation along z", "rotation about x"]),
+    ],
+)
+def test_missing_supports_are_named(supports, words):
+    with pytest.raises(errors.SolverError) as error:
+        fem.solve_static(bar(), STEEL, supports, [fem.Force(TIP, [1, 0, 0])])
+    for word in words:
+        assert word in str(error.value)
+
+
+def test_unknown_face_lists_the_known_ones():
+    with pytest.raises(ValueError, match="unknown face 'seat'"):
+        fem.solve_static(bar(), STEEL, [fem.Support("seat")], [])
