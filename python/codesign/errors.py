@@ -35,3 +35,7 @@ class SolverError(CodesignError):
 
 class StoreError(CodesignError):
     """A run's database that cannot be opened, read or written."""
+
+
+class ExecutionError(CodesignError):
+    """Evaluations cannot be run at all: workers do not start, keep dying, or disagree with the study."""

@@ -1,0 +1,102 @@
+"""State of a running search, and its display on a terminal."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, Self
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """What a run has done so far; `seconds` and `evaluated_here` count this session only."""
+
+    feasible: int
+    infeasible: int
+    failed: int
+    running: int
+    total: int
+    evaluated_here: int
+    cached: int
+    seconds: float
+    generation: int
+    hypervolume: float | None
+    ended: str | None = None
+
+    @property
+    def done(self) -> int:
+        """Designs with a result."""
+        return self.feasible + self.infeasible + self.failed
+
+    @property
+    def rate(self) -> float:
+        """Evaluations per second in this session, designs found in the cache not counted."""
+        return self.evaluated_here / self.seconds if self.seconds > 0 else 0.0
+
+    @property
+    def seconds_left(self) -> float | None:
+        """Estimated time left [s] at the mean rate of this session; None before the first evaluation."""
+        done_here = self.evaluated_here + self.cached
+        return (self.total - self.done) * self.seconds / done_here if done_here else None
+
+
+class ProgressBar:
+    """A live line on standard error: use in a `with` block and pass the object as `progress`."""
+
+    def __init__(self, title: str = "optimize", interval: float = 0.2) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, TextColumn
+        from rich.progress import Progress as Display
+
+        text = TextColumn("{task.fields[state]}")
+        self._display = Display(TextColumn(f"[bold]{title}"), BarColumn(None), text, console=Console(stderr=True))
+        self._task = self._display.add_task(title, total=None, state="starting workers")
+        self._interval, self._shown = interval, 0.0
+        self._last: Progress | None = None
+
+    def __enter__(self) -> Self:
+        self._display.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        if self._last is not None:
+            self._show(self._last)
+        self._display.stop()
+
+    def __call__(self, progress: Progress) -> None:
+        """Shows the state, a few times a second at most."""
+        self._last = progress
+        now = time.monotonic()
+        if now - self._shown >= self._interval or progress.done == progress.total:
+            self._shown = now
+            self._show(progress)
+
+    def _show(self, progress: Progress) -> None:
+        values: dict[str, Any] = {"total": progress.total, "completed": progress.done, "state": describe(progress)}
+        self._display.update(self._task, **values)
+
+
+def describe(progress: Progress) -> str:
+    """One line: counts, rate, hypervolume, time left."""
+    hypervolume = "—" if progress.hypervolume is None else f"{progress.hypervolume:.4f}"
+    left = progress.seconds_left
+    parts = [
+        f"{progress.done}/{progress.total}",
+        f"{progress.rate:.2f}/s" if progress.rate < 10 else f"{progress.rate:.0f}/s",
+        f"feasible {progress.feasible}",
+        f"infeasible {progress.infeasible}",
+        f"failed {progress.failed}",
+        f"hypervolume {hypervolume}",
+        f"left {duration(left)}" if left is not None else "left —",
+    ]
+    if progress.cached:
+        parts.insert(2, f"cached {progress.cached}")
+    return "  ".join(parts)
+
+
+def duration(seconds: float) -> str:
+    """`1:02:03` or `2:03`."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
