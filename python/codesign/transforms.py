@@ -45,17 +45,20 @@ def pose(xyz: Sequence[float] | Matrix = (0.0, 0.0, 0.0), rpy: Sequence[float] |
 
 
 def inverse(a_T_b: Matrix) -> Matrix:
-    """b_T_a (4, 4)."""
-    b_T_a = np.eye(4)
-    b_T_a[:3, :3] = a_T_b[:3, :3].T
-    b_T_a[:3, 3] = -a_T_b[:3, :3].T @ a_T_b[:3, 3]
+    """b_T_a (..., 4, 4) of poses (..., 4, 4)."""
+    b_T_a = np.zeros_like(a_T_b)
+    b_R_a = np.swapaxes(a_T_b[..., :3, :3], -1, -2)
+    b_T_a[..., :3, :3] = b_R_a
+    b_T_a[..., :3, 3] = -np.einsum("...ij,...j->...i", b_R_a, a_T_b[..., :3, 3])
+    b_T_a[..., 3, 3] = 1.0
     return b_T_a
 
 
-def rotation_about(axis: Matrix, angle: float) -> Matrix:
-    """Rotation matrix (3, 3) by `angle` [rad] about a unit axis (Rodrigues)."""
+def rotation_about(axis: Matrix, angle: ArrayLike) -> Matrix:
+    """Rotation matrices (..., 3, 3) by angles (...) [rad] about a unit axis (Rodrigues)."""
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = np.asarray(angle, dtype=float)[..., None, None]
     R: Matrix = np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
     return R
 

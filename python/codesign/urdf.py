@@ -129,8 +129,11 @@ class RobotDescription:
         origin = self.joint(joint).origin
         return np.eye(4) if origin is None else np.array(origin)
 
-    def frame_poses(self, positions: Mapping[str, float] | None = None) -> dict[str, Matrix]:
-        """root_T_link (4, 4) of every link; `positions`: joint name -> rad or m, zero where not given."""
+    def frame_poses(self, positions: Mapping[str, ArrayLike] | None = None) -> dict[str, Matrix]:
+        """root_T_link (4, 4) of every link; `positions`: joint name -> rad or m, zero where not given.
+
+        With positions (n,) of n postures, links that they move get (n, 4, 4).
+        """
         positions = positions or {}
         for name in positions:
             if self.joint(name).type not in MOVING:
@@ -246,14 +249,15 @@ def _find(named: Mapping[str, Any], name: str, kind: str) -> Any:
         raise UrdfError(f"the robot has no {kind} {name!r}") from None
 
 
-def _joint_motion(joint: yourdfpy.Joint, position: float) -> Matrix:
-    motion = np.eye(4)
-    if joint.type in MOVING and position != 0.0:
+def _joint_motion(joint: yourdfpy.Joint, position: ArrayLike) -> Matrix:
+    position = np.asarray(position, dtype=float)
+    motion = np.broadcast_to(np.eye(4), (*position.shape, 4, 4)).copy()
+    if joint.type in MOVING:
         axis = joint.axis / np.linalg.norm(joint.axis)
         if joint.type == "prismatic":
-            motion[:3, 3] = position * axis
+            motion[..., :3, 3] = position[..., None] * axis
         else:
-            motion[:3, :3] = rotation_about(axis, position)
+            motion[..., :3, :3] = rotation_about(axis, position)
     return motion
 
 

@@ -11,6 +11,8 @@ from codesign.errors import StudyError, UrdfError
 from codesign.inertial import Inertial
 from codesign.robot import JointAttachment, PartBody, PartPlacement, Pose, assemble
 from codesign.studies import ironcub
+from codesign.studies.ironcub.bracket import JetpackBracket
+from codesign.studies.ironcub.forearm import ForearmJetSupport
 from codesign.transforms import pose, rotation_from_rpy
 from codesign.urdf import RobotDescription
 
@@ -55,7 +57,10 @@ def turbine_of(offset_mm, length_mm):
 PLACEMENTS = {
     "bracket": [
         PartPlacement(
-            f"chest_{s}_bracket", Pose(rpy_deg=(180, 0, 0)), None, {f"{s}_turbine_support": JointAttachment("seat")}
+            f"chest_{s}_bracket",
+            Pose(rpy_deg=(180, 0, 0)),
+            None,
+            {f"{s}_turbine_support": JointAttachment("turbine_seat")},
         )
         for s in "lr"
     ],
@@ -73,7 +78,7 @@ PLACEMENTS = {
 
 def bodies(angle=15, distance=42, offset=88, length=50):
     return {
-        "bracket": PartBody(BRACKET, {"seat": seat_of(angle, distance)}),
+        "bracket": PartBody(BRACKET, {"turbine_seat": seat_of(angle, distance)}),
         "forearm": PartBody(FOREARM, {"turbine": turbine_of(offset, length)}),
     }
 
@@ -86,6 +91,32 @@ def base():
 @pytest.fixture(scope="module")
 def assembled(base):
     return assemble(base, PLACEMENTS, bodies())
+
+
+@pytest.mark.parametrize(("angle", "distance"), [(1, 40), (15, 42), (79, 100)])
+def test_bracket_names_the_seat_as_its_interface(angle, distance):
+    interfaces = JetpackBracket(angle, distance).interfaces()
+    assert list(interfaces) == ["turbine_seat"]
+    np.testing.assert_allclose(interfaces["turbine_seat"], seat_of(angle, distance), atol=1e-16)
+
+
+@pytest.mark.parametrize(("offset", "length"), [(80, 50), (88, 108), (120, 150)])
+def test_forearm_names_the_turbine_as_its_interface(offset, length):
+    interfaces = ForearmJetSupport(offset, length).interfaces()
+    assert list(interfaces) == ["turbine"]
+    np.testing.assert_allclose(interfaces["turbine"], turbine_of(offset, length), atol=1e-15)
+
+
+def test_real_parts_assemble_into_a_physical_robot_with_their_masses(base):
+    bracket, forearm = JetpackBracket(15, 42), ForearmJetSupport(80, 108)
+    parts = {
+        name: PartBody(p.mass_properties(), p.interfaces()) for name, p in [("bracket", bracket), ("forearm", forearm)]
+    }
+    robot = RobotDescription.from_text(assemble(base, PLACEMENTS, parts).to_text())
+    replaced = 2 * (parts["bracket"].properties.mass + parts["forearm"].properties.mass)
+    original = 2 * (0.227881 + 0.681091)
+    assert robot.total_mass == pytest.approx(base.total_mass - original + replaced, abs=1e-12)
+    np.testing.assert_allclose(robot.joint_origin("l_turbine_support")[:3, 3], [0.067218, 0, -0.012347], atol=5e-7)
 
 
 @pytest.mark.parametrize(("angle", "distance"), [(1, 40), (15, 42), (15, 48), (79, 100)])
@@ -191,11 +222,11 @@ def test_placements_read_from_a_study_and_refuse_unknown_keys():
     [
         (PartPlacement("nowhere"), UrdfError, "nowhere"),
         (
-            PartPlacement("chest", joints={"l_elbow": JointAttachment("seat")}),
+            PartPlacement("chest", joints={"l_elbow": JointAttachment("turbine_seat")}),
             UrdfError,
             "l_elbow hangs from link l_upper_arm",
         ),
-        (PartPlacement("chest", joints={"nothing": JointAttachment("seat")}), UrdfError, "nothing"),
+        (PartPlacement("chest", joints={"nothing": JointAttachment("turbine_seat")}), UrdfError, "nothing"),
         (PartPlacement("chest_l_bracket", joints={"l_turbine_support": JointAttachment("sea")}), StudyError, "'sea'"),
     ],
 )
@@ -212,7 +243,7 @@ def test_a_link_taken_twice_and_a_part_not_built_are_refused(base):
 
 
 def test_a_part_that_is_no_body_is_refused_with_the_links_name(base):
-    wrong = PartBody(Properties(1.0, np.zeros(3), np.diag([1.0, 1.0, 3.0])), {"seat": seat_of(15, 42)})
+    wrong = PartBody(Properties(1.0, np.zeros(3), np.diag([1.0, 1.0, 3.0])), {"turbine_seat": seat_of(15, 42)})
     with pytest.raises(UrdfError, match=r"chest_l_bracket.*exceeds"):
         assemble(base, {"bracket": PLACEMENTS["bracket"]}, {"bracket": wrong})
 

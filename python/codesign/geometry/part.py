@@ -12,7 +12,7 @@ from typing import Any
 from codesign.errors import GeometryError
 from codesign.geometry.mass import MassProperties, extrapolate, mass_properties, volume_moments
 from codesign.geometry.mesh_io import write_stl
-from codesign.geometry.profile import Resolution
+from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Shape, face_names
 from codesign.geometry.solid import Solid, build_solid
 from codesign.geometry.surface import SurfaceMesh, surface_mesh
@@ -68,6 +68,10 @@ class Part(ABC):
     def through_holes(self) -> int | None:
         """Number of through holes (genus) of the shape; checked whenever it is built, unless None."""
         return None
+
+    def interfaces(self) -> dict[str, Vector]:
+        """Frames at which other bodies are attached: name -> part_T_interface (4, 4) [m]; z points out of the part."""
+        return {}
 
     def check(self) -> None:  # noqa: B027 (most parts need no more than the ranges of their parameters)
         """Refuses parameter values that give no sound part, by `limit`; called on construction."""

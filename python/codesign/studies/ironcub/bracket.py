@@ -131,6 +131,14 @@ class JetpackBracket(Part):
         pocket = cylinder(SEAT_RADIUS, -1.0, SEAT_DEPTH, end_face="seat")
         return [tool.placed(self._seat_frame) for tool in (pocket, at_points(hole, SEAT_HOLES))]
 
+    def interfaces(self) -> dict[str, Vector]:
+        """turbine_seat: middle of the pocket's floor, x along the slab away from the crease, z out of the floor."""
+        x, z = self.slab_direction, -self.slab_normal
+        part_T_seat = np.eye(4)
+        part_T_seat[:3, :3] = np.column_stack([x, np.cross(z, x), z])
+        part_T_seat[:3, 3] = np.array(self._seat_frame.point(0.0, 0.0, SEAT_DEPTH)) * MILLIMETRE
+        return {"turbine_seat": part_T_seat}
+
     # What a load case needs to know, in metres and part axes.
 
     seat_radius = SEAT_RADIUS * MILLIMETRE

@@ -38,6 +38,7 @@ RELIEF_FLOOR = -6.0
 HUB_RADIUS, RING_RADIUS, BORE_RADIUS, BLEND_RADIUS = 27.5, 65.9, 60.9, 25.0
 FLANGE_HOLES = ((2.0, polar(11.7, 135.0, -135.0)), (1.25, polar(12.5, 160.0, -160.0)))
 MINIMUM_WALL = 2.0
+NOZZLE_REACH = 146.1  # from the distal face to the nozzle's exit
 
 
 @dataclass(frozen=True)
@@ -167,6 +168,13 @@ class ForearmJetSupport(Part):
             .arc(hy, hz, centre=(by, bz), turn="right").close()
         )  # fmt: skip
         return outline.without(circle(0.0, -drop, BORE_RADIUS))
+
+    def interfaces(self) -> dict[str, Vector]:
+        """turbine: at the nozzle's exit of the turbine clamped in the ring, z along the jet, x parallel to part z."""
+        part_T_turbine = np.eye(4)
+        part_T_turbine[:3, :3] = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
+        part_T_turbine[:3, 3] = np.array([self._seat_x - NOZZLE_REACH, AXIS[1], -self.offset]) * MILLIMETRE
+        return {"turbine": part_T_turbine}
 
     # What a load case needs to know, in metres and part axes.
 
