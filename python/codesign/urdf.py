@@ -151,6 +151,14 @@ class RobotDescription:
                 pending.append(joint.child)
         return poses
 
+    def mesh_filenames(self) -> list[tuple[str, str]]:
+        """(link, filename) of every mesh of the robot's visuals and collisions, as written in the file."""
+        return [
+            (str(link.get("name")), str(mesh.get("filename")))
+            for link in self._xml.findall("link")
+            for mesh in link.iter("mesh")
+        ]
+
     # ---- editing: each returns a new description
 
     def replace_inertial(self, link: str, inertial: Inertial) -> RobotDescription:
@@ -193,6 +201,13 @@ class RobotDescription:
             elif tag == "visual" and old_material is not None:
                 shape.append(old_material)
         return self._with(element)
+
+    def with_mesh_filenames(self, renamed: Mapping[str, str]) -> RobotDescription:
+        """The robot with mesh filenames replaced: old -> new; those not named stay."""
+        xml = copy.deepcopy(self._xml)
+        for mesh in xml.iter("mesh"):
+            mesh.set("filename", renamed.get(str(mesh.get("filename")), str(mesh.get("filename"))))
+        return RobotDescription(self.root_link, self.directory, xml)
 
     # ---- writing
 
