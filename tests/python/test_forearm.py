@@ -18,7 +18,9 @@ def test_distal_face_has_the_published_area(offset: float) -> None:
 def test_volume_is_the_closed_form(offset: float, length: float) -> None:
     part = ForearmJetSupport.as_published(offset, length)
     volume_mm3 = 23.9 * (part.seat_area * 1e6 + 490.87) + 254.469 * length + 36083.8
-    assert part.mass_properties().volume * 1e9 == pytest.approx(volume_mm3, rel=2e-6)  # the constants have seven digits
+    assert part.mass_properties().volume * 1e9 == pytest.approx(
+        volume_mm3, rel=5e-6
+    )  # extrapolated from 24 and 48 segments
 
 
 def test_mass_properties_of_the_published_optimum() -> None:

@@ -18,6 +18,7 @@ from codesign.geometry.solid import Solid, build_solid
 from codesign.geometry.surface import SurfaceMesh, surface_mesh
 
 _PARAMETER = "codesign.parameter"
+MASS_SEGMENTS = 24  # of the coarser of the two meshes that mass properties are extrapolated from
 FEM_RESOLUTION = Resolution(segments=48)  # stresses do not change with more
 
 
@@ -108,7 +109,7 @@ class Part(ABC):
 
         Raises: GeometryError if it is not one body with the expected holes and all named faces.
         """
-        return _checked(self.shape(), resolution, self.through_holes())
+        return _checked(self.shape(), resolution, self.through_holes()).tidied()
 
     def surface(self, segments: int = 48) -> SurfaceMesh:
         """Closed surface in metres with named faces; `segments`: chords on a full circle (fewer on small ones)."""
@@ -116,13 +117,13 @@ class Part(ABC):
 
     def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> SurfaceMesh:
         """Closed surface in metres of the shape to be analysed; `geometry` and `variant` as in `fem_shape`."""
-        return surface_mesh(_checked(self.fem_shape(geometry, **variant), Resolution(segments)))
+        return surface_mesh(_checked(self.fem_shape(geometry, **variant), Resolution(segments)).tidied())
 
     def mass_properties(self) -> MassProperties:
         """Mass, centre of mass and inertia of the true curved solid (relative error below 1e-5), part frame, SI."""
         moments = []
         for refine in (1, 2):
-            solid = self.solid(Resolution(refine=refine))
+            solid = _checked(self.shape(), Resolution(MASS_SEGMENTS, refine=refine), self.through_holes())
             moments.append(volume_moments(solid.points, solid.triangles))
         return mass_properties(extrapolate(*moments), self.density)
 

@@ -10,7 +10,8 @@ import numpy as np
 from codesign.errors import GeometryError
 from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Difference, Intersection, Moved, Shape, Union
-from codesign.geometry.tessellate import Indices, PrimitiveMesh, tessellate
+from codesign.geometry.tessellate import Indices, tessellate
+from codesign.geometry.tidy import tidy
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,10 @@ class Solid:
         chosen: Indices = self.triangles[wanted[self.face]]
         return chosen
 
+    def tidied(self) -> Solid:
+        """The same surface without the tiny edges and flat triangles that booleans leave; see `tidy`."""
+        return Solid(*tidy(self.points, self.triangles, self.face), self.face_names)
+
 
 def build_solid(shape: Shape, resolution: Resolution, genus: int | None = None) -> Solid:
     """Mesh of a shape. `genus`: the number of through holes it must have, if known.
@@ -45,7 +50,7 @@ def build_solid(shape: Shape, resolution: Resolution, genus: int | None = None) 
     Raises: GeometryError if the result is empty, falls apart into several bodies or has another number of holes.
     """
     evaluator = _Evaluator(resolution)
-    body = evaluator.evaluate(shape)
+    body = evaluator.evaluate_whole(shape)
     if body.status() != manifold3d.Error.NoError:
         raise GeometryError(f"the shape is not a closed solid: {body.status().name}")
     if body.is_empty():
@@ -69,30 +74,57 @@ class _Evaluator:
     def __init__(self, resolution: Resolution) -> None:
         self.resolution = resolution
         self.face_names: list[str] = []
-        self._meshes: dict[int, PrimitiveMesh] = {}  # by identity: the copies of a pattern share one primitive
+        self._done: dict[int, manifold3d.Manifold] = {}  # by identity: the copies of a pattern share one primitive
+
+    def evaluate_whole(self, shape: Shape) -> manifold3d.Manifold:
+        """The manifold of the outermost shape.
+
+        Its tools that are placed at an angle are cut in their own frame, where bounding boxes are far more selective
+        (three times faster at 45 degrees). Only here: the way there and back rounds coordinates by 1e-14, which inner
+        solids that share a plane with others would not survive.
+        """
+        if not isinstance(shape, Difference):
+            return self.evaluate(shape)
+        straight = tuple(tool for tool in shape.tools if not _is_tilted(tool))
+        body = self.evaluate(Difference(shape.base, straight))
+        frames: dict[tuple[tuple[float, ...], ...], list[Shape]] = {}
+        for tool in shape.tools:
+            if isinstance(tool, Moved) and _is_tilted(tool):
+                frames.setdefault(tool.matrix, []).append(tool.shape)
+        for matrix, tools in frames.items():
+            forth = np.array(matrix)
+            seen = self._now(body.transform(np.linalg.inv(forth)[:3]))
+            cut = manifold3d.Manifold.batch_boolean([seen, *map(self.evaluate, tools)], manifold3d.OpType.Subtract)
+            body = self._now(cut).transform(forth[:3])
+        return body
 
     def evaluate(self, shape: Shape) -> manifold3d.Manifold:
         """The manifold of a shape, in the coordinates it is written in."""
         if isinstance(shape, Moved):
             # Evaluated before it is moved: bounding boxes of a pattern are tight, and apart, in its own axes.
-            still = self.evaluate(shape.shape)
-            still.num_tri()
-            return still.transform(np.array(shape.matrix)[:3])
+            return self._now(self.evaluate(shape.shape)).transform(np.array(shape.matrix)[:3])
         if isinstance(shape, Union):
             return self._batch(shape.shapes, manifold3d.OpType.Add)
-        if isinstance(shape, Difference):
-            return self._batch((shape.base, *shape.tools), manifold3d.OpType.Subtract)
         if isinstance(shape, Intersection):
             return self._batch(shape.shapes, manifold3d.OpType.Intersect)
-        return self._primitive(shape)
+        if isinstance(shape, Difference):
+            return self._batch((shape.base, *shape.tools), manifold3d.OpType.Subtract)
+        done = self._done.get(id(shape))
+        if done is None:
+            done = self._done[id(shape)] = self._primitive(shape)
+        return done
 
     def _batch(self, shapes: tuple[Shape, ...], operation: manifold3d.OpType) -> manifold3d.Manifold:
         return manifold3d.Manifold.batch_boolean([self.evaluate(shape) for shape in shapes], operation)
 
+    @staticmethod
+    def _now(manifold: manifold3d.Manifold) -> manifold3d.Manifold:
+        """Evaluates at once what manifold3d would put off and rearrange."""
+        manifold.num_tri()
+        return manifold
+
     def _primitive(self, shape: Shape) -> manifold3d.Manifold:
-        mesh = self._meshes.get(id(shape))
-        if mesh is None:
-            mesh = self._meshes[id(shape)] = tessellate(shape, self.resolution)
+        mesh = tessellate(shape, self.resolution)
         first = len(self.face_names)
         self.face_names += mesh.face_names
         tool = manifold3d.Manifold(
@@ -108,3 +140,11 @@ class _Evaluator:
             reason = f"{tool.status().name}, volume {tool.volume():g} mm³"
             raise GeometryError(f"{type(shape).__name__} is not a solid: {reason}")
         return tool
+
+
+def _is_tilted(shape: Shape) -> bool:
+    """Whether a shape is placed at an angle to the part's axes."""
+    if not isinstance(shape, Moved):
+        return False
+    rotation = np.abs(np.array(shape.matrix)[:3, :3])
+    return bool((np.minimum(rotation, 1.0 - rotation) > 1e-9).any())

@@ -121,7 +121,7 @@ class JetpackBracket(Part):
             Path(0.0, r).arc(0.0, -r, centre=(0.0, 0.0), turn="right").line(0.0, -r - 1.0)
             .line(tip + 1.0, -r - 1.0).line(tip + 1.0, r + 1.0).line(0.0, r + 1.0).close()
         )  # fmt: skip
-        beyond_end = Extrusion(round_end, -1.0, self.thickness + 1.0, slab)
+        beyond_end = Extrusion(round_end, -1.0, self.thickness + 1.0).placed(slab)
         return body - beside_neck - beside_neck.mirrored("y") - beyond_end
 
     def _seat_tools(self) -> list[Shape]:
