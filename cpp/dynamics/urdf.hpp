@@ -11,7 +11,7 @@ namespace codesign::dynamics {
 struct UrdfOptions {
   // Names of the joints that move, in the wanted order; all others are locked at position 0 and
   // their links lumped. Absent: every joint that is not fixed, in the order of the URDF text.
-  std::optional<std::vector<std::string>> joints;
+  std::optional<std::vector<std::string>> joints = std::nullopt;
   // Accept inertia tensors that no body can have (spec of the published iRonCub robots); nothing
   // else is waived.
   bool as_published = false;
