@@ -56,7 +56,7 @@ class SqliteCache:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             connection = sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
             connection.execute("PRAGMA journal_mode=WAL")
-            connection.execute("PRAGMA synchronous=OFF")  # an entry lost to a power cut is only computed again
+            connection.execute("PRAGMA synchronous=NORMAL")  # a power cut may lose entries, not damage the file
             connection.execute(SCHEMA)
             self._connection = connection
         except (OSError, sqlite3.Error) as error:

@@ -24,6 +24,7 @@ from typing import IO, Any, Protocol, Self
 
 from codesign.errors import ExecutionError
 from codesign.evaluation import Evaluation
+from codesign.problem import Problem
 from codesign.worker import LENGTH, write_message
 
 DEFAULT_LOADER = "codesign.study:load_study"
@@ -45,9 +46,9 @@ class StudyRef:
     loader: str = DEFAULT_LOADER
 
     @classmethod
-    def of(cls, study: Any) -> StudyRef:
+    def of(cls, study: Problem) -> StudyRef:
         """Reference to a study object; its `loader` attribute, if any, names another `module:function`."""
-        return cls(str(study.source), str(study.hash), getattr(study, "loader", DEFAULT_LOADER))
+        return cls(study.source, study.hash, getattr(study, "loader", DEFAULT_LOADER))
 
 
 @dataclass(frozen=True, slots=True)

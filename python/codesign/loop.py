@@ -24,6 +24,7 @@ from codesign.errors import StoreError
 from codesign.evaluation import Evaluation
 from codesign.execute import Executor, Outcome, Task
 from codesign.front import FrontTracker
+from codesign.problem import Problem
 from codesign.progress import Progress
 from codesign.search import Grid, Search
 from codesign.store import Generation, Record, RunStore
@@ -69,6 +70,16 @@ class Stop:
         return before is not None and now is not None and now - before <= self.stall_tolerance * abs(before)
 
 
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A search, when it asks, when it ends, and how many designs it will ask for at most."""
+
+    search: Search
+    schedule: Schedule
+    stop: Stop
+    total: int
+
+
 @dataclass(slots=True)
 class _Batch:
     start: int
@@ -80,17 +91,14 @@ class Loop:
 
     def __init__(
         self,
-        study: Any,
-        search: Search,
-        schedule: Schedule,
-        stop: Stop,
+        study: Problem,
+        plan: Plan,
         store: RunStore,
-        cache: PartCache | None,
-        progress: Callable[[Progress], None] | None,
-        total: int,
+        cache: PartCache | None = None,
+        progress: Callable[[Progress], None] | None = None,
     ) -> None:
-        self._study, self._search, self._schedule, self._stop = study, search, schedule, stop
-        self._store, self._cache, self._notify, self._total = store, cache, progress, total
+        self._study, self._search, self._schedule, self._stop = study, plan.search, plan.schedule, plan.stop
+        self._store, self._cache, self._notify, self._total = store, cache, progress, plan.total
         self._known = {record.grid: record for record in store.records() if record.trajectory == ""}
         self._stored = len(self._known)
         self._asked_before = store.asked()
@@ -314,7 +322,7 @@ def checked(evaluation: Evaluation, objectives: tuple[str, ...]) -> Evaluation:
     return Evaluation.failure(evaluation.design, f"inconsistent result: {problem}") if problem else evaluation
 
 
-def _provenance(study: Any) -> dict[str, Any]:
+def _provenance(study: Problem) -> dict[str, Any]:
     """Where and with what a session runs."""
     from importlib import metadata
 

@@ -18,10 +18,10 @@ class Progress:
     running: int
     total: int
     evaluated_here: int
-    cached: int
     seconds: float
-    generation: int
-    hypervolume: float | None
+    cached: int = 0
+    generation: int = 0
+    hypervolume: float | None = None
     ended: str | None = None
 
     @property

@@ -170,9 +170,7 @@ class RunStore:
             except sqlite3.Error as error:
                 errors.append(str(error))
                 continue
-            store = cls(path, connection, None)
-            store._check_version()
-            return store
+            return cls(path, connection, None)._checked()
         raise StoreError(f"{path}: cannot be read: {'; '.join(errors)}")
 
     @classmethod
@@ -180,14 +178,22 @@ class RunStore:
         try:
             with _guard(path):
                 connection = sqlite3.connect(path, isolation_level=None, timeout=30.0)
-                connection.execute("PRAGMA journal_mode = WAL")
-                connection.execute("PRAGMA synchronous = FULL")
-            store = cls(path, connection, lock)
-            store._check_version()
-        except BaseException:
+        except StoreError:
             lock.close()
             raise
-        return store
+        return cls(path, connection, lock)._checked()
+
+    def _checked(self) -> RunStore:
+        """Itself, if the file is one of ours; closed otherwise. A foreign file is not changed."""
+        try:
+            self._check_version()
+            if self._lock is not None:
+                self._execute("PRAGMA journal_mode = WAL")
+                self._execute("PRAGMA synchronous = FULL")
+        except BaseException:
+            self.close()
+            raise
+        return self
 
     def _check_version(self) -> None:
         (application,) = self._execute("PRAGMA application_id").fetchone()

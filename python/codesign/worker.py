@@ -21,7 +21,11 @@ import sys
 import threading
 import time
 import traceback
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # a worker imports what its study needs, nothing more
+    from codesign.cache import PartCache
+    from codesign.problem import Problem
 
 LENGTH = struct.Struct(">I")
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
@@ -45,14 +49,15 @@ def read_message(stream: IO[bytes]) -> dict[str, Any] | None:
     return document
 
 
-def load(loader: str, source: str) -> Any:
+def load(loader: str, source: str) -> Problem:
     """The study: `loader` is `module:function`, called with `source`."""
     module, _, function = loader.partition(":")
-    return getattr(importlib.import_module(module), function)(source)
+    study: Problem = getattr(importlib.import_module(module), function)(source)
+    return study
 
 
 def evaluate(
-    study: Any, design: dict[str, float], trajectory: str | None, cache: Any, memory_mib: int = 0
+    study: Problem, design: dict[str, float], trajectory: str | None, cache: PartCache | None, memory_mib: int = 0
 ) -> dict[str, Any]:
     """One evaluation as a message; an exception becomes a failed one that names it."""
     exhausted = False

@@ -79,6 +79,7 @@ class FakeStudy:
             constraints={"margin": margin},
             violations={"margin": max(0.0, -margin)},
             parts={"part": part},
+            flight={"trajectory": trajectory},
             seconds={"total": time.perf_counter()},
         )
 
