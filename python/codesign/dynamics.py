@@ -1,13 +1,28 @@
-"""Rigid-body dynamics of robots described by URDF.
-
-Every function takes the model, the base pose (4, 4) in the world and the joint positions s (n,). Velocities nu (6+n,)
-stack the linear velocity of the base origin and the angular velocity, both in world axes, then the joint velocities
-("mixed" convention); Jacobians and matrices refer to this nu. With a fixed base the six base coordinates are absent.
-SI units. Wrong shapes raise ValueError, unknown names UnknownNameError.
-"""
+"""Rigid-body dynamics of robots described by URDF, box-constrained QPs and jet-powered flight."""
 
 from codesign._core.dynamics import (
+    BoxQpResult,
+    BoxQpSolver,
+    CommandSpeeds,
+    CommandWindow,
+    ContactPoint,
+    Disturbances,
+    FailureLimits,
+    FlightLog,
+    FlightObjectives,
+    FlightSettings,
+    FlightStatus,
+    Gains,
+    Integrator,
+    JetModel,
+    JointGroup,
+    Limits,
     Model,
+    ObjectiveParts,
+    QpStatus,
+    ReferenceSettings,
+    Turbine,
+    Weights,
     bias_forces,
     center_of_mass,
     center_of_mass_jacobian,
@@ -27,10 +42,33 @@ from codesign._core.dynamics import (
     locked_inertia,
     mass_matrix,
     potential_energy,
+    simulate_flight,
+    solve_box_qp,
 )
 
 __all__ = [
+    "BoxQpResult",
+    "BoxQpSolver",
+    "CommandSpeeds",
+    "CommandWindow",
+    "ContactPoint",
+    "Disturbances",
+    "FailureLimits",
+    "FlightLog",
+    "FlightObjectives",
+    "FlightSettings",
+    "FlightStatus",
+    "Gains",
+    "Integrator",
+    "JetModel",
+    "JointGroup",
+    "Limits",
     "Model",
+    "ObjectiveParts",
+    "QpStatus",
+    "ReferenceSettings",
+    "Turbine",
+    "Weights",
     "bias_forces",
     "center_of_mass",
     "center_of_mass_jacobian",
@@ -50,4 +88,6 @@ __all__ = [
     "locked_inertia",
     "mass_matrix",
     "potential_energy",
+    "simulate_flight",
+    "solve_box_qp",
 ]

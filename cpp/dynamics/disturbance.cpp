@@ -1,0 +1,85 @@
+#include "dynamics/disturbance.hpp"
+
+#include <cmath>
+
+namespace codesign::dynamics {
+
+namespace {
+
+// One stream per purpose, so that adding a body does not change the gusts.
+constexpr std::uint64_t kGustStream = 0x6775737473ULL;
+constexpr std::uint64_t kMassStream = 0x6d6173736573ULL;
+constexpr std::uint64_t kThrustStream = 0x746872757374ULL;
+
+RandomStream stream(std::uint64_t seed, std::uint64_t purpose) {
+  RandomStream mixed(seed);
+  return RandomStream(mixed.next() ^ purpose);
+}
+
+}  // namespace
+
+std::uint64_t RandomStream::next() {
+  state_ += 0x9e3779b97f4a7c15ULL;
+  std::uint64_t z = state_;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
+double RandomStream::uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+
+double RandomStream::normal() {
+  double sum = -6.0;
+  for (int i = 0; i < 12; ++i) sum += uniform();
+  return sum;
+}
+
+Gusts::Gusts(const FlightSettings& settings)
+    : mean_(settings.disturbances.wind_force),
+      deviation_(settings.disturbances.gust_deviation),
+      state_(Eigen::Vector3d::Zero()),
+      memory_(std::exp(-settings.step / settings.disturbances.gust_time)),
+      drive_(std::sqrt(1.0 - memory_ * memory_)),
+      calm_(deviation_.isZero(0.0)),
+      random_(stream(settings.disturbances.seed, kGustStream)) {
+  for (double& x : state_) x = random_.normal();
+}
+
+Eigen::Vector3d Gusts::next() {
+  if (calm_) return mean_;
+  const Eigen::Vector3d force = mean_ + deviation_.cwiseProduct(state_);
+  for (double& x : state_) x = memory_ * x + drive_ * random_.normal();
+  return force;
+}
+
+Eigen::VectorXd body_mass_scales(const Disturbances& disturbances, int bodies) {
+  Eigen::VectorXd scales = Eigen::VectorXd::Constant(bodies, disturbances.mass_scale);
+  if (disturbances.mass_deviation == 0.0) return scales;
+  RandomStream random = stream(disturbances.seed, kMassStream);
+  for (double& scale : scales) scale *= 1.0 + disturbances.mass_deviation * random.normal();
+  return scales;
+}
+
+Eigen::VectorXd thrust_scales(const Disturbances& disturbances, int jets) {
+  Eigen::VectorXd scales = disturbances.thrust_scale.size() > 0
+                               ? disturbances.thrust_scale
+                               : Eigen::VectorXd(Eigen::VectorXd::Ones(jets));
+  if (disturbances.thrust_deviation == 0.0) return scales;
+  RandomStream random = stream(disturbances.seed, kThrustStream);
+  for (double& scale : scales) scale *= 1.0 + disturbances.thrust_deviation * random.normal();
+  return scales;
+}
+
+Model scale_masses(const Model& model, const Eigen::VectorXd& scales) {
+  Model scaled = model;
+  scaled.total_mass = 0.0;
+  for (std::size_t i = 0; i < scaled.bodies.size(); ++i) {
+    const double scale = scales[static_cast<Eigen::Index>(i)];
+    scaled.bodies[i].inertia.mass *= scale;
+    scaled.bodies[i].inertia.inertia *= scale;
+    scaled.total_mass += scaled.bodies[i].inertia.mass;
+  }
+  return scaled;
+}
+
+}  // namespace codesign::dynamics

@@ -1,0 +1,168 @@
+#include "dynamics/flight_settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "dynamics/spatial.hpp"
+
+namespace codesign::dynamics {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& attribute, const std::string& reason) {
+  throw std::invalid_argument("FlightSettings." + attribute + ": " + reason);
+}
+
+void require_positive(const std::string& attribute, double value) {
+  if (!(value > 0.0) || !std::isfinite(value)) {
+    refuse(attribute, "is " + std::to_string(value) + ", must be positive and finite");
+  }
+}
+
+void require_not_negative(const std::string& attribute, double value) {
+  if (!(value >= 0.0) || !std::isfinite(value)) {
+    refuse(attribute, "is " + std::to_string(value) + ", must not be negative");
+  }
+}
+
+void require_size(const std::string& attribute, const Eigen::VectorXd& value, std::size_t size,
+                  const std::string& of) {
+  if (static_cast<std::size_t>(value.size()) != size) {
+    refuse(attribute, "has " + std::to_string(value.size()) + " values, must have one per " + of +
+                          " (" + std::to_string(size) + ")");
+  }
+  if (!value.allFinite()) refuse(attribute, "has a value that is not finite");
+}
+
+void require_unique(const std::string& attribute, const std::vector<std::string>& names) {
+  if (names.empty()) refuse(attribute, "is empty");
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (!seen.insert(name).second) refuse(attribute, "names \"" + name + "\" twice");
+  }
+}
+
+void validate_run(const FlightSettings& s) {
+  require_positive("step", s.step);
+  require_positive("duration", s.duration);
+  constexpr double kMostSamples = 1e6;
+  if (s.duration / s.step > kMostSamples) refuse("step", "gives more than a million samples");
+  if (std::abs(s.duration / s.step - std::round(s.duration / s.step)) > 1e-6) {
+    refuse("duration", "is not a whole number of steps");
+  }
+  if (s.substeps < 1) refuse("substeps", "must be at least 1");
+  if (!s.base_pose.allFinite() || rotation_error(s.base_pose.topLeftCorner<3, 3>()) > 1e-9 ||
+      s.base_pose.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+    refuse("base_pose", "is not a rigid pose (rotation within 1e-9)");
+  }
+  for (const CommandWindow& w : s.trajectory) {
+    if (!(w.start < w.end)) refuse("trajectory", "has a window whose end is not after its start");
+    const Eigen::Matrix<double, 6, 1> signs(w.front, w.left, w.up, w.roll, w.pitch, w.yaw);
+    if (!signs.allFinite()) refuse("trajectory", "has a command that is not finite");
+  }
+}
+
+void validate_robot(const FlightSettings& s) {
+  require_unique("joints", s.joints);
+  require_unique("jets", s.jets);
+  const std::size_t joints = s.joints.size();
+  const std::size_t jets = s.jets.size();
+  require_size("initial_joints", s.initial_joints, joints, "joint");
+  require_size("initial_thrusts", s.initial_thrusts, jets, "jet");
+  require_size("gains.posture", s.gains.posture, joints, "joint");
+  require_size("limits.joint_lower", s.limits.joint_lower, joints, "joint");
+  require_size("limits.joint_upper", s.limits.joint_upper, joints, "joint");
+  require_size("limits.joint_range_scale", s.limits.joint_range_scale, joints, "joint");
+  for (Eigen::Index i = 0; i < s.limits.joint_lower.size(); ++i) {
+    if (!(s.limits.joint_lower[i] * s.limits.joint_range_scale[i] <
+          s.limits.joint_upper[i] * s.limits.joint_range_scale[i])) {
+      refuse("limits",
+             "the range of joint \"" + s.joints[static_cast<std::size_t>(i)] + "\" is empty");
+    }
+  }
+  for (const auto& [a, b] : s.symmetry_pairs) {
+    const int count = static_cast<int>(jets);
+    if (a == b || std::min(a, b) < 0 || std::max(a, b) >= count) {
+      refuse("symmetry_pairs",
+             "must name two different jets by index 0 … " + std::to_string(count - 1));
+    }
+  }
+  if (s.jet_model == JetModel::kTurbine && s.turbines.size() != jets) {
+    refuse("turbines", "must have one per jet (" + std::to_string(jets) + ")");
+  }
+  for (const JointGroup& group : s.groups) {
+    for (const std::string& name : group.joints) {
+      if (std::find(s.joints.begin(), s.joints.end(), name) == s.joints.end()) {
+        refuse("groups", "\"" + group.name + "\" names \"" + name + "\", not one of the joints");
+      }
+    }
+    if (group.joints.empty()) refuse("groups", "\"" + group.name + "\" has no joint");
+  }
+}
+
+void validate_control(const FlightSettings& s) {
+  require_positive("reference.com_time", s.reference.com_time);
+  require_positive("reference.jerk_time", s.reference.jerk_time);
+  require_positive("reference.angular_velocity_time", s.reference.angular_velocity_time);
+  require_not_negative("reference.rotation_gain", s.reference.rotation_gain);
+  if (!(s.reference.roll_min <= s.reference.roll_max) ||
+      !(s.reference.pitch_min <= s.reference.pitch_max)) {
+    refuse("reference", "a lower angle limit is above the upper one");
+  }
+  require_positive("gains.momentum_integral", s.gains.momentum_integral);
+  require_not_negative("weights.momentum", s.weights.momentum);
+  require_not_negative("weights.constant_inertia", s.weights.constant_inertia);
+  require_not_negative("weights.posture", s.weights.posture);
+  require_not_negative("weights.joint_velocity", s.weights.joint_velocity);
+  require_not_negative("weights.thrust_rate", s.weights.thrust_rate);
+  require_not_negative("weights.thrust_symmetry", s.weights.thrust_symmetry);
+  require_positive("weights.regularisation", s.weights.regularisation);
+  require_positive("weights.torque", s.weights.torque);
+  require_positive("limits.joint_speed", s.limits.joint_speed);
+  require_positive("limits.joint_slope", s.limits.joint_slope);
+  require_positive("limits.thrust_max", s.limits.thrust_max);
+  require_positive("limits.thrust_rate", s.limits.thrust_rate);
+  require_positive("limits.thrust_slope", s.limits.thrust_slope);
+  require_positive("limits.torque", s.limits.torque);
+  require_positive("limits.torque_rate", s.limits.torque_rate);
+  require_positive("failure.com_error", s.failure.com_error);
+  require_positive("failure.attitude_error", s.failure.attitude_error);
+  require_positive("failure.joint_speed", s.failure.joint_speed);
+}
+
+void validate_disturbances(const FlightSettings& s) {
+  const Disturbances& d = s.disturbances;
+  // Random numbers stay within six deviations: a larger deviation could turn a scale negative.
+  constexpr double kMostDeviation = 0.15;
+  require_positive("disturbances.gust_time", d.gust_time);
+  require_positive("disturbances.mass_scale", d.mass_scale);
+  for (const double deviation : {d.mass_deviation, d.thrust_deviation}) {
+    if (!(deviation >= 0.0 && deviation <= kMostDeviation)) {
+      refuse("disturbances", "mass_deviation and thrust_deviation must be within 0 … 0.15");
+    }
+  }
+  if (d.thrust_scale.size() > 0) {
+    require_size("disturbances.thrust_scale", d.thrust_scale, s.jets.size(), "jet");
+  }
+  if (!d.wind_force.allFinite() || !d.gust_deviation.allFinite() ||
+      d.gust_deviation.minCoeff() < 0.0) {
+    refuse("disturbances", "wind_force and gust_deviation must be finite, the latter not negative");
+  }
+}
+
+}  // namespace
+
+void validate(const FlightSettings& settings) {
+  validate_run(settings);
+  validate_robot(settings);
+  validate_control(settings);
+  validate_disturbances(settings);
+}
+
+int sample_count(const FlightSettings& settings) {
+  return static_cast<int>(std::lround(settings.duration / settings.step)) + 1;
+}
+
+}  // namespace codesign::dynamics

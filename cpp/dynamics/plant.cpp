@@ -1,0 +1,113 @@
+#include "dynamics/plant.hpp"
+
+#include <Eigen/Geometry>
+
+#include "dynamics/disturbance.hpp"
+
+namespace codesign::dynamics {
+
+using Eigen::Vector3d;
+
+namespace {
+
+RobotState zero_state(const Model& model) {
+  return {Pose{}, Eigen::VectorXd::Zero(model.joint_count()), Eigen::VectorXd::Zero(model.dofs())};
+}
+
+// Rate of the rotation vector θ in R = Exp(θ) R₀ when R turns with ω: the inverse of the
+// exponential's differential, to fourth order in θ.
+Vector3d rotation_vector_rate(const Vector3d& theta, const Vector3d& omega) {
+  return omega - 0.5 * theta.cross(omega) + theta.cross(theta.cross(omega)) / 12.0;
+}
+
+}  // namespace
+
+void displace(const Eigen::Ref<const Eigen::VectorXd>& displacement, RobotState& state) {
+  state.base.p += displacement.head<3>();
+  state.base.R = (exp_so3(displacement.segment<3>(3)) * state.base.R).eval();
+  state.joints += displacement.tail(state.joints.size());
+}
+
+Plant::Plant(const Model& model, const FlightSettings& settings)
+    : model_(scale_masses(model, body_mass_scales(settings.disturbances, model.body_count()))),
+      integrator_(settings.integrator),
+      substeps_(settings.substeps),
+      step_(settings.step / settings.substeps),
+      has_model_masses_(settings.disturbances.mass_scale == 1.0 &&
+                        settings.disturbances.mass_deviation == 0.0),
+      thrust_scale_(thrust_scales(settings.disturbances, static_cast<int>(settings.jets.size()))),
+      thrust_(thrust_scale_),
+      terms_(model, settings.jets),
+      joint_space_(model.joint_count()),
+      stage_(zero_state(model)),
+      origin_(stage_) {
+  for (Eigen::VectorXd* v : {&force_, &nu_dot_, &rate_, &rate_sum_, &acceleration_sum_}) {
+    v->setZero(model.dofs());
+  }
+}
+
+void Plant::acceleration(const RobotTerms& terms, JointSpace& joint_space,
+                         const PlantInputs& inputs) {
+  thrust_ = inputs.thrust.cwiseProduct(thrust_scale_);
+  force_ = -terms.bias;
+  add_jet_forces(model_, terms, thrust_, force_);
+  force_.head<3>() += inputs.base_force;
+  joint_space.acceleration(inputs.torque, force_, nu_dot_);
+}
+
+bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs) {
+  update_terms(model_, state, terms_);
+  if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return false;
+  acceleration(terms_, joint_space_, inputs);
+  return true;
+}
+
+bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
+                    RobotState& state) {
+  for (int i = 0; i < substeps_; ++i) {
+    const bool terms_known = i == 0 && has_model_masses_;
+    if (terms_known) {
+      acceleration(terms, joint_space, inputs);
+    } else if (!acceleration(state, inputs)) {
+      return false;
+    }
+    if (integrator_ == Integrator::kRungeKutta4) {
+      if (!runge_kutta(inputs, state)) return false;
+      continue;
+    }
+    if (integrator_ == Integrator::kEuler) rate_ = step_ * state.velocity;
+    state.velocity += step_ * nu_dot_;
+    if (integrator_ == Integrator::kSemiImplicitEuler) rate_ = step_ * state.velocity;
+    displace(rate_, state);
+  }
+  return true;
+}
+
+// Classical Runge-Kutta in the coordinates displace() uses, centred on the state at the step's
+// start; nu_dot_ holds the acceleration there.
+bool Plant::runge_kutta(const PlantInputs& inputs, RobotState& state) {
+  constexpr double kNode[4] = {0.0, 0.5, 0.5, 1.0};
+  constexpr double kWeight[4] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+  origin_ = state;
+  rate_ = state.velocity;
+  rate_sum_ = kWeight[0] * rate_;
+  acceleration_sum_ = kWeight[0] * nu_dot_;
+  for (int i = 1; i < 4; ++i) {
+    stage_ = origin_;
+    rate_ *= kNode[i] * step_;
+    displace(rate_, stage_);
+    stage_.velocity += kNode[i] * step_ * nu_dot_;
+    if (!acceleration(stage_, inputs)) return false;
+    const Vector3d theta = rate_.segment<3>(3);
+    rate_ = stage_.velocity;
+    rate_.segment<3>(3) = rotation_vector_rate(theta, stage_.velocity.segment<3>(3));
+    rate_sum_ += kWeight[i] * rate_;
+    acceleration_sum_ += kWeight[i] * nu_dot_;
+  }
+  rate_sum_ *= step_;
+  displace(rate_sum_, state);
+  state.velocity += step_ * acceleration_sum_;
+  return true;
+}
+
+}  // namespace codesign::dynamics

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dynamics/flight_settings.hpp"
+#include "dynamics/joint_space.hpp"
+#include "dynamics/robot_terms.hpp"
+
+namespace codesign::dynamics {
+
+// Held over one control step.
+struct PlantInputs {
+  Eigen::VectorXd torque;      // (joints) [Nm]
+  Eigen::VectorXd thrust;      // (jets) [N], as commanded: errors of the jets are the plant's
+  Eigen::Vector3d base_force;  // on the base's origin, world axes [N]
+};
+
+// The flying robot: advances a state by one control step under held inputs.
+class Plant {
+ public:
+  Plant(const Model& model, const FlightSettings& settings);
+
+  // terms and joint_space are those of the undisturbed robot at `state`; the first stage uses them
+  // if the plant has the model's masses. False if the mass matrix is singular or not finite.
+  bool advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
+               RobotState& state);
+
+ private:
+  bool acceleration(const RobotState& state, const PlantInputs& inputs);
+  void acceleration(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs);
+  bool runge_kutta(const PlantInputs& inputs, RobotState& state);
+
+  Model model_;
+  Integrator integrator_;
+  int substeps_;
+  double step_;  // of one substep [s]
+  bool has_model_masses_;
+  Eigen::VectorXd thrust_scale_, thrust_, force_, nu_dot_;
+  RobotTerms terms_;  // at the inner stages
+  JointSpace joint_space_;
+  RobotState stage_, origin_;
+  Eigen::VectorXd rate_, rate_sum_, acceleration_sum_;
+};
+
+// q ⊕ displacement: positions add, the rotation vector (world axes) turns the base.
+void displace(const Eigen::Ref<const Eigen::VectorXd>& displacement, RobotState& state);
+
+}  // namespace codesign::dynamics

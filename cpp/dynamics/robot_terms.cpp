@@ -1,0 +1,110 @@
+#include "dynamics/robot_terms.hpp"
+
+#include <Eigen/Geometry>
+
+namespace codesign::dynamics {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+RobotTerms::RobotTerms(const Model& model, const std::vector<std::string>& jet_frames)
+    : kin(model), velocity(model), inertia(model), forces(model) {
+  mass_matrix.setZero(model.dofs(), model.dofs());
+  bias.setZero(model.dofs());
+  momentum_matrix.setZero(6, model.dofs());
+  for (const std::string& name : jet_frames) {
+    MountedJet jet;
+    jet.frame = frame_index(model, name);
+    for (int i = model.frames[static_cast<std::size_t>(jet.frame)].body; i > 0;
+         i = model.bodies[static_cast<std::size_t>(i)].parent) {
+      jet.chain.push_back(i);
+    }
+    jets.push_back(jet);
+  }
+}
+
+void update_terms(const Model& model, const RobotState& state, RobotTerms& terms) {
+  forward_kinematics(model, state.base, state.joints, terms.kin);
+  forward_velocities(model, terms.kin, state.velocity, terms.velocity);
+  compute_inertias(model, terms.kin, terms.inertia);
+  mass_matrix(model, terms.kin, terms.inertia, terms.mass_matrix);
+  bias_forces(model, terms.kin, terms.inertia, terms.velocity, terms.forces, terms.bias);
+  centroidal_momentum_matrix(model, terms.kin, terms.inertia, terms.momentum_matrix);
+  terms.momentum.noalias() = terms.momentum_matrix * state.velocity;
+  terms.com = center_of_mass(terms.kin, terms.inertia);
+  const Vector3d com_offset = terms.inertia.subtrees[0].com;
+  for (MountedJet& jet : terms.jets) {
+    const Frame& frame = model.frames[static_cast<std::size_t>(jet.frame)];
+    const BodyPose& body = terms.kin.bodies[static_cast<std::size_t>(frame.body)];
+    jet.axis = -(body.R * frame.body_T_frame.R.col(2));
+    jet.origin = body.p + body.R * frame.body_T_frame.p;
+    jet.arm = jet.origin - com_offset;
+  }
+}
+
+void add_jet_forces(const Model& model, const RobotTerms& terms,
+                    const Eigen::Ref<const Eigen::VectorXd>& thrusts,
+                    Eigen::Ref<Eigen::VectorXd> generalized) {
+  for (std::size_t i = 0; i < terms.jets.size(); ++i) {
+    const MountedJet& jet = terms.jets[i];
+    const Vector3d force = thrusts[static_cast<Eigen::Index>(i)] * jet.axis;
+    generalized.head<3>() += force;
+    generalized.segment<3>(3) += jet.origin.cross(force);
+    for (const int b : jet.chain) {
+      const Body& body = model.bodies[static_cast<std::size_t>(b)];
+      const BodyPose& pose = terms.kin.bodies[static_cast<std::size_t>(b)];
+      generalized[model.column(body)] += body.type == JointType::kRevolute
+                                             ? pose.axis().dot((jet.origin - pose.p).cross(force))
+                                             : pose.axis().dot(force);
+    }
+  }
+}
+
+void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A) {
+  for (std::size_t i = 0; i < terms.jets.size(); ++i) {
+    const MountedJet& jet = terms.jets[i];
+    const auto column = static_cast<Eigen::Index>(i);
+    A.col(column).head<3>() = jet.axis;
+    A.col(column).tail<3>() = jet.arm.cross(jet.axis);
+  }
+}
+
+void jet_map_rate(const Model& model, const RobotTerms& terms,
+                  const Eigen::Ref<const Eigen::VectorXd>& thrusts, Eigen::Ref<Matrix6Xd> Lambda) {
+  // Every jet's arm shortens with the velocity of the centre of mass: −Σ Tᵢ S(aᵢ)(−J_c).
+  Vector3d total = Vector3d::Zero();
+  for (std::size_t i = 0; i < terms.jets.size(); ++i) {
+    total += thrusts[static_cast<Eigen::Index>(i)] * terms.jets[i].axis;
+  }
+  const double per_mass = 1.0 / terms.inertia.subtrees[0].mass;
+  Lambda.topRows<3>().setZero();
+  for (Eigen::Index j = 0; j < Lambda.cols(); ++j) {
+    Lambda.col(j).tail<3>() = total.cross(per_mass * terms.momentum_matrix.col(j).head<3>());
+  }
+  for (std::size_t i = 0; i < terms.jets.size(); ++i) {
+    const MountedJet& jet = terms.jets[i];
+    const Vector3d force = thrusts[static_cast<Eigen::Index>(i)] * jet.axis;
+    // Per unit of a coordinate: d(force) = ω × force, d(arm) = velocity of the jet's origin.
+    const auto add = [&](Eigen::Index column, const Vector3d& omega, const Vector3d& velocity) {
+      const Vector3d turn = omega.cross(force);
+      Lambda.col(column).head<3>() += turn;
+      Lambda.col(column).tail<3>() += jet.arm.cross(turn) + velocity.cross(force);
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3d unit = Vector3d::Unit(axis);
+      add(axis, Vector3d::Zero(), unit);
+      add(3 + axis, unit, unit.cross(jet.origin));
+    }
+    for (const int b : jet.chain) {
+      const Body& body = model.bodies[static_cast<std::size_t>(b)];
+      const BodyPose& pose = terms.kin.bodies[static_cast<std::size_t>(b)];
+      if (body.type == JointType::kRevolute) {
+        add(model.column(body), pose.axis(), pose.axis().cross(jet.origin - pose.p));
+      } else {
+        add(model.column(body), Vector3d::Zero(), pose.axis());
+      }
+    }
+  }
+}
+
+}  // namespace codesign::dynamics

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "dynamics/centroidal.hpp"
+#include "dynamics/rigid_body.hpp"
+
+namespace codesign::dynamics {
+
+// Configuration and velocity of a floating-base robot, mixed convention (model.hpp).
+struct RobotState {
+  Pose base;
+  Eigen::VectorXd joints;    // (n,)
+  Eigen::VectorXd velocity;  // (6 + n,)
+};
+
+// A jet on the robot: frame, the bodies it pushes (from its own down to, not including, the base),
+// and where it is at the present state; world axes.
+struct MountedJet {
+  int frame = 0;
+  std::vector<int> chain;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();    // unit vector along which thrust pushes
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // from the base origin [m]
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();  // from the centre of mass [m]
+};
+
+// All that a control step needs to know of the robot at one state. Allocated once; written by
+// update_terms.
+struct RobotTerms {
+  RobotTerms(const Model& model, const std::vector<std::string>& jet_frames);
+
+  KinematicsData kin;
+  VelocityData velocity;
+  InertiaData inertia;
+  ForceData forces;
+  Eigen::MatrixXd mass_matrix;  // M (6+n, 6+n)
+  Eigen::VectorXd bias;         // b (6+n,)
+  Matrix6Xd momentum_matrix;    // C (6, 6+n)
+  Vector6d momentum;            // (l; w) about the centre of mass
+  Eigen::Vector3d com;          // in the world [m]
+  std::vector<MountedJet> jets;
+};
+
+void update_terms(const Model& model, const RobotState& state, RobotTerms& terms);
+
+// generalized (6+n,) += Σ Jᵢᵀ aᵢ Tᵢ for the thrusts T (jets,) [N].
+void add_jet_forces(const Model& model, const RobotTerms& terms,
+                    const Eigen::Ref<const Eigen::VectorXd>& thrusts,
+                    Eigen::Ref<Eigen::VectorXd> generalized);
+
+// Column i of A (6, jets): rate of (l; w) per newton of jet i.
+void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A);
+
+// Λ (6, 6+n): d(A T)/dt = Λ ν at constant thrusts T.
+void jet_map_rate(const Model& model, const RobotTerms& terms,
+                  const Eigen::Ref<const Eigen::VectorXd>& thrusts, Eigen::Ref<Matrix6Xd> Lambda);
+
+}  // namespace codesign::dynamics

@@ -1,0 +1,83 @@
+#include "dynamics/torque_controller.hpp"
+
+#include "dynamics/dense_kernels.hpp"
+
+namespace codesign::dynamics {
+
+TorqueController::TorqueController(const FlightSettings& settings)
+    : step_(settings.step),
+      proportional_(settings.gains.torque_proportional),
+      integral_(settings.gains.torque_integral),
+      weight_(settings.weights.torque),
+      limit_(settings.limits.torque),
+      rate_limit_(settings.limits.torque_rate),
+      solver_(static_cast<int>(settings.joints.size())) {
+  const auto n = static_cast<Eigen::Index>(settings.joints.size());
+  for (Eigen::VectorXd* v :
+       {&error_integral_, &velocity_error_, &right_side_, &solution_, &torque_, &gradient_}) {
+    v->setZero(n);
+  }
+  for (Eigen::MatrixXd* m : {&system_, &inverse_, &hessian_}) m->setZero(n, n);
+  lower_.setConstant(n, -limit_);
+  upper_.setConstant(n, limit_);
+}
+
+// Minimise ½|W τ + s̈₀ − s̈*|² + ½ε|τ|² with W = M̂⁻¹ and s̈₀ = W f̂. Multiplied by M̂², the normal
+// equations (W² + εI) τ = W (s̈* − s̈₀) become (I + ε M̂²) τ = M̂ s̈* − f̂: no inverse, and a condition
+// number close to one, also where M̂ is nearly singular or indefinite.
+QpStatus TorqueController::update(const JointSpace& joint_space,
+                                  const Eigen::Ref<const Eigen::VectorXd>& joint_force,
+                                  const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
+                                  const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity) {
+  const Eigen::MatrixXd& inertia = joint_space.joint_inertia();
+  const int n = static_cast<int>(inertia.rows());
+  velocity_error_ = joint_velocity - commanded_velocity;
+  solution_ = -proportional_ * velocity_error_ - integral_ * error_integral_;
+  error_integral_ += step_ * velocity_error_;
+  right_side_.noalias() = inertia * solution_;
+  right_side_ -= joint_force;
+
+  system_.setIdentity();
+  add_outer_product(system_.data(), n, n, inertia.data(), n, n, weight_);
+  iterations_ = 1;
+  if (!cholesky_in_place(system_.data(), n, n)) return QpStatus::kNotPositiveDefinite;
+  solution_ = right_side_;
+  cholesky_solve(system_.data(), n, n, solution_.data());
+  if (!solution_.allFinite()) return QpStatus::kBadData;
+  if (solution_.cwiseAbs().maxCoeff() > limit_) {
+    const QpStatus status = solve_within_limits(joint_space);
+    if (status != QpStatus::kSolved) return status;
+  }
+
+  if (!started_) {
+    started_ = true;
+    torque_ = solution_;
+  }
+  const double change = rate_limit_ * step_;
+  torque_ += (solution_ - torque_).cwiseMax(-change).cwiseMin(change);
+  return QpStatus::kSolved;
+}
+
+// The same problem with its limits, on the explicit W: (W² + εI), −W² right_side.
+QpStatus TorqueController::solve_within_limits(const JointSpace& joint_space) {
+  const int n = static_cast<int>(inverse_.rows());
+  for (Eigen::Index j = 0; j < n; ++j) {
+    gradient_.setZero();
+    gradient_[j] = 1.0;
+    joint_space.solve_joint_inertia(gradient_);
+    inverse_.col(j) = gradient_;
+  }
+  hessian_.setZero();
+  hessian_.diagonal().setConstant(weight_);
+  add_outer_product(hessian_.data(), n, n, inverse_.data(), n, n, 1.0);
+  hessian_.triangularView<Eigen::StrictlyUpper>() = hessian_.transpose();
+  gradient_ = -right_side_;
+  joint_space.solve_joint_inertia(gradient_);
+  joint_space.solve_joint_inertia(gradient_);
+  const BoxQpResult& result = solver_.solve(hessian_, gradient_, lower_, upper_);
+  iterations_ += result.iterations;
+  solution_ = result.x;
+  return result.status;
+}
+
+}  // namespace codesign::dynamics

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dynamics/box_qp.hpp"
+#include "dynamics/flight_settings.hpp"
+#include "dynamics/joint_space.hpp"
+
+namespace codesign::dynamics {
+
+// Joint torques that make the joint velocities follow their commands: a PI law for the joint
+// accelerations, the torques by regularised least squares within their limits, then a rate limiter.
+class TorqueController {
+ public:
+  explicit TorqueController(const FlightSettings& settings);
+
+  // joint_force: f̂ of everything but the torques. Returns the status of the torque QP.
+  QpStatus update(const JointSpace& joint_space,
+                  const Eigen::Ref<const Eigen::VectorXd>& joint_force,
+                  const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
+                  const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity);
+
+  const Eigen::VectorXd& torque() const { return torque_; }  // of the last update (n,) [Nm]
+  int iterations() const { return iterations_; }             // factorisations of the last update
+
+ private:
+  QpStatus solve_within_limits(const JointSpace& joint_space);
+
+  double step_, proportional_, integral_, weight_, limit_, rate_limit_;
+  bool started_ = false;
+  int iterations_ = 0;
+  Eigen::VectorXd error_integral_, velocity_error_, right_side_, solution_, torque_;
+  Eigen::MatrixXd system_;
+  // For the bounded problem.
+  BoxQpSolver solver_;
+  Eigen::MatrixXd inverse_, hessian_;
+  Eigen::VectorXd gradient_, lower_, upper_;
+};
+
+}  // namespace codesign::dynamics
