@@ -1,0 +1,51 @@
+"""Details of a design: the study's chain once more, keeping the fields and histories that an Evaluation leaves out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from codesign import _core
+from codesign.analysis import part_case
+from codesign.evaluation import Evaluation
+from codesign.flight_setup import flight_settings, joint_names
+from codesign.pipeline import build_parts, build_robot, stress_settings
+from codesign.report.details import Detail, FlightHistory, StressField, flight_history
+
+
+def compute_detail(study: Any, evaluation: Evaluation) -> Detail:
+    """Stress fields and flight history of an evaluated design, on the trajectory that it was judged by.
+
+    Raises: CodesignError where the chain does.
+    """
+    design = study.space.design(evaluation.design)
+    config = study.configured(design)
+    trajectory = evaluation.flight.get("trajectory") or config.flight.trajectory
+    settings = flight_settings(config.flight, config.trajectories[trajectory])
+    parts = build_parts(study, design, config)
+    cases = [part_case(part, stress_settings(config, name)) for name, part in parts.items()]
+    result = _core.evaluate(cases, build_robot(study, design).to_text(), settings)
+    fields = {name: stress_field(analysis) for name, analysis in zip(parts, result.parts, strict=True)}
+    return Detail(evaluation, fields, history(config.flight, trajectory, result.flight))
+
+
+def history(flight: Any, trajectory: str, log: Any) -> FlightHistory:
+    """Histories of a flight under a study's `[flight]` section."""
+    groups = {group.name: list(group.joints) for group in flight.joint_groups if group.velocity_weight > 0}
+    return flight_history(log, trajectory, tuple(flight.jets.frames), tuple(joint_names(flight)), groups)
+
+
+def stress_field(analysis: _core.PartAnalysis) -> StressField:
+    """Von Mises stress on the boundary of a part's mesh; each quadratic triangle becomes four flat ones."""
+    boundary = np.asarray(analysis.mesh.boundary)
+    corners, middles = boundary[:, :3], boundary[:, 3:]
+    (a, b, c), (ab, bc, ca) = corners.T, middles.T
+    triangles = np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    used, index = np.unique(triangles, return_inverse=True)
+    return StressField(
+        points=np.asarray(analysis.mesh.nodes)[used],
+        triangles=index.reshape(triangles.shape).astype(np.int64),
+        von_mises=np.asarray(analysis.result.von_mises)[used],
+        peak=float(analysis.result.peak_stress),
+    )

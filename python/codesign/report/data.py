@@ -1,0 +1,243 @@
+"""What a report shows: a run's designs, its front, what was gained over the original, which design to build."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from codesign.design import DesignSpace, Variable
+from codesign.evaluation import Evaluation
+from codesign.front import non_dominated
+from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number shown to people: its key in an Evaluation, its name in words, its unit, and what it means."""
+
+    key: str
+    label: str
+    unit: str = ""
+    meaning: str = ""
+
+    @property
+    def title(self) -> str:
+        """Label with unit, for axes and column heads."""
+        return f"{self.label} ({self.unit})" if self.unit else self.label
+
+
+OBJECTIVES = {
+    "momentum": Quantity(
+        "momentum",
+        "Momentum error",
+        "kg·m/s",
+        "Root mean square over the flight of the difference between the robot's linear and angular momentum and the "
+        "wanted one.",
+    ),
+    "joint_velocity": Quantity(
+        "joint_velocity",
+        "Joint velocity error",
+        "rad/s",
+        "Root mean square of the difference between commanded and reached joint velocities: torso counted twice, plus "
+        "both arms.",
+    ),
+    "thrust": Quantity(
+        "thrust", "Thrust", "N", "Sum of the jet thrusts, averaged over the flight: what flying costs in fuel."
+    ),
+}
+FAMILY_UNITS = {
+    "rms": {},
+    "script": {"momentum": "", "joint_velocity": "", "thrust": "N"},
+    "paper": {"momentum": "", "joint_velocity": "", "thrust": "N"},
+}
+CONSTRAINTS = {
+    "safety_factor": Quantity(
+        "safety_factor", "Safety factor", "", "Yield strength over peak stress of the weakest part."
+    ),
+    "qp_failures": Quantity("qp_failures", "Controller failures", "", "Control steps without a solution."),
+}
+
+
+def words(key: str) -> str:
+    """A key as words: `jetpack_bracket` -> `Jetpack bracket`."""
+    text = key.replace("_", " ").strip()
+    return text[:1].upper() + text[1:]
+
+
+def objective_quantities(keys: Sequence[str], family: str = "rms") -> tuple[Quantity, ...]:
+    """Objectives in words; unknown keys are shown as they are written."""
+    found = []
+    for key in keys:
+        known = OBJECTIVES.get(key, Quantity(key, words(key)))
+        unit = FAMILY_UNITS.get(family, {}).get(key, known.unit)
+        found.append(Quantity(key, known.label, unit, known.meaning if family == "rms" or key == "thrust" else ""))
+    return tuple(found)
+
+
+def constraint_quantity(key: str) -> Quantity:
+    """A constraint in words."""
+    return CONSTRAINTS.get(key, Quantity(key, words(key)))
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One finished design; `id` is what people call it, `generation` the step of the search that asked for it."""
+
+    id: int
+    evaluation: Evaluation
+    generation: int | None = None
+
+
+@dataclass(frozen=True)
+class ReportData:
+    """A run as the report, the figures and the viewer read it.
+
+    entries: finished designs in the order of evaluation. waiting: designs that were asked for and have no result yet.
+    baseline: the design that everything is compared with, None if the study names none or it could not be evaluated.
+    limits: constraint -> (sign, limit), sign ">=" or "<=".   provenance: what made the numbers, for people.
+    labels: variable -> name for people.   notes: what a reader must know before trusting the numbers.
+    """
+
+    directory: Path
+    title: str
+    description: str
+    variables: tuple[Variable, ...]
+    objectives: tuple[Quantity, ...]
+    entries: tuple[Entry, ...]
+    baseline: Evaluation | None = None
+    waiting: int = 0
+    planned: int | None = None
+    limits: dict[str, tuple[str, float]] = field(default_factory=dict)
+    provenance: dict[str, str] = field(default_factory=dict)
+    labels: dict[str, str] = field(default_factory=dict)
+    export_command: str = "codesign export"
+    notes: tuple[str, ...] = ()
+
+    def label(self, variable: Variable) -> str:
+        """A variable's name for people."""
+        return words(self.labels.get(variable.name) or variable.name)
+
+    @property
+    def space(self) -> DesignSpace:
+        """The design variables."""
+        return DesignSpace(self.variables)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Objective keys in order."""
+        return tuple(o.key for o in self.objectives)
+
+    def vector(self, evaluation: Evaluation) -> Matrix:
+        """Objectives (m,) of an evaluation; NaN where it has none."""
+        return np.array([evaluation.objectives.get(key, np.nan) for key in self.keys])
+
+    @cached_property
+    def values(self) -> Matrix:
+        """Objectives (n, m) of the entries; NaN where a design has none."""
+        return np.array([self.vector(e.evaluation) for e in self.entries]).reshape(-1, len(self.objectives))
+
+    @cached_property
+    def feasible(self) -> Mask:
+        """Mask (n,) of the feasible entries."""
+        return np.array([e.evaluation.status == "feasible" for e in self.entries], dtype=bool)
+
+    @cached_property
+    def front(self) -> list[int]:
+        """Positions of the best compromises, by the first objective: feasible, dominated by no feasible design."""
+        feasible = np.flatnonzero(self.feasible)
+        if not len(feasible):
+            return []
+        best = feasible[non_dominated(self.values[feasible])]
+        return [int(i) for i in best[np.argsort(self.values[best, 0], kind="stable")]]
+
+    @cached_property
+    def baseline_vector(self) -> Matrix | None:
+        """Objectives (m,) of the baseline, None if it has not all of them."""
+        if self.baseline is None:
+            return None
+        vector = self.vector(self.baseline)
+        return vector if np.isfinite(vector).all() else None
+
+    @cached_property
+    def recommended(self) -> int | None:
+        """Position of the design to build: the knee of the front, if possible nowhere worse than the baseline."""
+        if not self.front:
+            return None
+        return self.front[knee(self.values[self.front], self.baseline_vector)]
+
+    @cached_property
+    def best(self) -> dict[str, int]:
+        """Objective -> position of the feasible design with its lowest value."""
+        if not self.front:
+            return {}
+        return {key: self.front[int(np.argmin(self.values[self.front, k]))] for k, key in enumerate(self.keys)}
+
+    @cached_property
+    def dominating(self) -> list[int]:
+        """Positions on the front that dominate the baseline."""
+        vector = self.baseline_vector
+        return [] if vector is None else [i for i in self.front if dominates(self.values[i], vector)]
+
+    @cached_property
+    def counts(self) -> Counter[str]:
+        """Number of designs by status."""
+        return Counter(e.evaluation.status for e in self.entries)
+
+    @cached_property
+    def hypervolume(self) -> Matrix:
+        """Hypervolume (n,) of the feasible designs after each evaluation, in the box that all of them span."""
+        return hypervolume_history(self.values, self.feasible)
+
+    def gain(self, position: int) -> Matrix | None:
+        """Relative change (m,) of each objective from the baseline to an entry: negative is better."""
+        vector = self.baseline_vector
+        return None if vector is None else (self.values[position] - vector) / np.abs(vector)
+
+    def find(self, design: Evaluation) -> int | None:
+        """Position of an evaluation's design among the entries."""
+        for i, entry in enumerate(self.entries):
+            if entry.evaluation.design == design.design:
+                return i
+        return None
+
+    @cached_property
+    def highlights(self) -> dict[str, Evaluation]:
+        """Designs worth a closer look, each once: the recommended, the best of each objective, the original."""
+        chosen: dict[str, Evaluation] = {}
+        if self.recommended is not None:
+            chosen["recommended"] = self.entries[self.recommended].evaluation
+        for objective in self.objectives:
+            if objective.key in self.best:
+                chosen.setdefault(
+                    f"lowest {objective.label.lower()}", self.entries[self.best[objective.key]].evaluation
+                )
+        if self.baseline is not None:
+            chosen["original"] = self.baseline
+        unique: dict[str, Evaluation] = {}
+        for role, evaluation in chosen.items():
+            if all(evaluation.design != other.design for other in unique.values()):
+                unique[role] = evaluation
+        return unique
+
+
+def reasons(run: ReportData) -> list[tuple[str, str, list[int]]]:
+    """Why designs were not feasible: (status, reason without its numbers, ids), the most frequent first."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for entry in run.entries:
+        evaluation = entry.evaluation
+        if evaluation.status != "feasible":
+            groups.setdefault((evaluation.status, pattern(evaluation)), []).append(entry.id)
+    return sorted(((s, r, ids) for (s, r), ids in groups.items()), key=lambda g: (g[0] != "failed", -len(g[2])))
+
+
+def pattern(evaluation: Evaluation) -> str:
+    """The reason with numbers replaced by `…`, so that designs that fail alike count together."""
+    import re
+
+    text = evaluation.reason or ", ".join(k for k, v in evaluation.violations.items() if v > 0) or "no reason recorded"
+    return re.sub(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", "…", text)

@@ -1,0 +1,67 @@
+'use strict';
+const report = JSON.parse(document.getElementById('data').textContent);
+const designs = report.designs;
+const original = report.baseline === null ? null : designs[report.baseline];
+const FEASIBLE = 0, INFEASIBLE = 1, FAILED = 2;
+const STATUS = ['feasible', 'infeasible', 'failed'];
+const element = id => document.getElementById(id);
+const escaped = text => String(text).replace(/[&<>"]/g, c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'})[c]);
+const colour = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+const known = value => value !== null && value !== undefined;
+
+/** A number with about `digits` significant digits and a true minus sign, never in exponent form for usual sizes. */
+function number(value, digits = 4) {
+  if (!known(value)) return '–';
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e7 || size < 1e-5)) return value.toExponential(digits - 1).replace(/-/g, '−');
+  const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return value.toFixed(Math.min(decimals, 8)).replace('-', '−');
+}
+const plain = value => String(value).replace('-', '−');
+const percent = (value, digits = 1) => !known(value) ? '' :
+  (value > 0 ? '+' : value < 0 ? '−' : '±') + Math.abs(100 * value).toFixed(digits) + ' %';
+const sense = value => !known(value) || Math.abs(value) < 5e-4 ? '' : value < 0 ? 'good' : 'bad';
+const withUnit = (text, unit) => unit ? `${text} <small>${escaped(unit)}</small>` : text;
+const name = design => design === original && design.id === null ? 'Original' : `Design ${design.id}`;
+
+/** What a design is, in words, for its tags. */
+function roles(design) {
+  const index = designs.indexOf(design), found = [];
+  if (index === report.recommended) found.push('recommended');
+  if (design === original) found.push('original');
+  report.objectives.forEach(o => { if (report.best[o.key] === index) found.push('lowest ' + o.label.toLowerCase()); });
+  if (design.front && !found.includes('recommended')) found.push('best compromise');
+  return found;
+}
+
+/** Relative change of objective `k` from the original; null where either is unknown. */
+function change(design, k) {
+  if (!original || design === original || !known(design.f[k]) || !known(original.f[k])) return null;
+  return (design.f[k] - original.f[k]) / Math.abs(original.f[k]);
+}
+
+const font = () => ({family: getComputedStyle(document.body).fontFamily, size: 12.5, color: colour('muted')});
+const axis = (title, more = {}) => ({
+  title: {text: title, font: {...font(), size: 13}, standoff: 10}, gridcolor: colour('line'), zeroline: false, linecolor: colour('strong'),
+  ticks: 'outside', ticklen: 4, tickcolor: colour('strong'), tickfont: font(), ...more,
+});
+const layout = (more = {}) => ({
+  paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)', font: font(), margin: {l: 66, r: 16, t: 10, b: 52}, showlegend: false,
+  hoverlabel: {bgcolor: colour('bg'), bordercolor: colour('strong'), font: {...font(), color: colour('ink')}, align: 'left'}, ...more,
+});
+/** Draws a chart when its place comes near the screen, or when the page is printed. */
+const waiting = new Map();
+const watcher = new IntersectionObserver(entries => entries.filter(e => e.isIntersecting).forEach(e => drawNow(e.target)), {rootMargin: '300px'});
+function whenVisible(node, draw) {
+  if (!node) return;
+  waiting.set(node, draw);
+  watcher.observe(node);
+}
+function drawNow(node) {
+  const draw = waiting.get(node);
+  watcher.unobserve(node);
+  waiting.delete(node);
+  if (draw && node.isConnected) draw(node);
+}
+
+const settings = {displaylogo: false, responsive: true, displayModeBar: false, scrollZoom: false, doubleClick: 'reset'};

@@ -1,0 +1,124 @@
+/** The selected design: its card beside the chart, its parts in 3-D, its flight. */
+// Light to dark with monotone lightness: a part reads as a lit body, and the order survives colour blindness and grey print.
+const STRESS_SCALE = [[0, '#e3e6e8'], [0.2, '#f4e3a1'], [0.45, '#f2ac42'], [0.7, '#d2601a'], [1, '#7a1616']];
+
+function card(i) {
+  const d = designs[i], box = element('card');
+  if (!box) return;
+  const tags = roles(d).map(r => `<span class="tag${r === 'best compromise' || r === 'original' ? ' plain' : ''}">${escaped(r)}</span>`);
+  if (d.status !== FEASIBLE) tags.push(`<span class="tag warn">${STATUS[d.status]}</span>`);
+  const variables = report.variables.map((v, k) => {
+    const place = value => 100 * (value - v.min) / ((v.max - v.min) || 1);
+    const was = original && d !== original ? `<u style="left:${place(original.x[k])}%" title="original: ${plain(original.x[k])}"></u>` : '';
+    return `<div class="row"><span>${escaped(v.label)}</span><b>${withUnit(plain(d.x[k]), v.unit)}</b>` +
+      `<div class="track" role="img" aria-label="between ${plain(v.min)} and ${plain(v.max)}">${was}<i style="left:${place(d.x[k])}%"></i></div></div>`;
+  });
+  const objectives = report.objectives.map((o, k) =>
+    `<div class="row"><span>${escaped(o.label)}</span><b>${withUnit(number(d.f[k]), o.unit)}<span class="delta ${sense(change(d, k))}">${percent(change(d, k))}</span></b></div>`);
+  const constraints = report.constraints.map((c, k) => {
+    const verdict = !known(d.c[k]) ? '' : d.g[k] > 0 ? '<span class="bad"> violated</span>' : '<span class="good"> ✓</span>';
+    return `<div class="row"><span>${escaped(c.label)} <small>${escaped(c.rule)}</small></span><b>${number(d.c[k], 3)}${verdict}</b></div>`;
+  });
+  box.innerHTML = `<header><h2>${name(d)}</h2><span class="step"><button type="button" class="quiet" data-step="-1" aria-label="Previous best compromise" title="Previous best compromise">←</button>` +
+    `<button type="button" class="quiet" data-step="1" aria-label="Next best compromise" title="Next best compromise">→</button></span></header>` +
+    `<p class="tags">${tags.join('')}</p>${d.reason ? `<p class="reason">${escaped(d.reason)}</p>` : ''}` +
+    `<div class="group"><h3>Parameters${original && d !== original ? ' <small>– mark: original</small>' : ''}</h3>${variables.join('')}</div>` +
+    (d.f.some(known) ? `<div class="group"><h3>Objectives${original && d !== original ? ', against the original' : ''}</h3>${objectives.join('')}</div>` : '') +
+    (constraints.length && d.c.some(known) ? `<div class="group"><h3>Constraints</h3>${constraints.join('')}</div>` : '') +
+    (d.files ? `<div class="group"><h3>Files</h3>${d.files.map(f => `<div class="row"><a href="${escaped(f.href)}">${escaped(f.label)}</a><small>${escaped(f.size)}</small></div>`).join('')}</div>` : '') +
+    `<div class="group"><button type="button" class="copy" data-copy="${escaped(command(d))}">Copy export command</button></div>`;
+}
+const command = d => report.command + ' ' + report.variables.map((v, k) => `--set ${v.key}=${d.x[k]}`).join(' ') + ` --out design-${d.id ?? 'original'}`;
+
+const PART_FACTS = [['Mass', 'kg', 4, 1], ['Safety factor', '', 3, 1], ['Peak stress', 'MPa', 3, 1e-6], ['Stress error', 'MPa', 2, 1e-6], ['Displacement', 'µm', 3, 1e6]];
+
+function drawParts(i) {
+  const box = element('parts'), d = designs[i];
+  if (!box) return;
+  element('parts-name').textContent = name(d);
+  const detail = report.details[d.detail];
+  const cards = report.parts.map((part, k) => {
+    const values = d.p[k];
+    if (!values) return '';
+    const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd></div>`);
+    const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, coloured by stress; drag to turn"></div>` : '';
+    return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl></article>`;
+  });
+  document.querySelectorAll('.solid').forEach(node => Plotly.purge(node));
+  box.innerHTML = cards.join('') || '<p class="absent">No part was built for this design.</p>';
+  element('parts-absent').innerHTML = detail || !cards.join('') ? '' : absent('The 3-D view with stress and the flight histories are');
+  report.parts.forEach((part, k) => whenVisible(element(`solid-${k}`), node => drawSolid(node, detail.parts[part.key])));
+}
+
+function absent(what) {
+  const kept = designs.map((d, i) => i).filter(i => report.details[designs[i].detail]);
+  kept.sort((a, b) => (b === report.recommended) - (a === report.recommended));
+  if (!kept.length) return `<p class="absent">${what} not in this report.</p>`;
+  const links = kept.map(i => `<button type="button" data-select="${i}">${name(designs[i])}</button> (${escaped(roles(designs[i])[0] || '')})`);
+  return `<p class="absent">${what} kept for ${links.join(', ')}. For any other design, use <code>codesign view</code>.</p>`;
+}
+
+function decode(text, type) {
+  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  return new type(bytes.buffer);
+}
+
+/** Camera position; farther away in a narrow box. */
+function eye(node) {
+  const far = Math.max(1, 1.15 * node.clientHeight / node.clientWidth);
+  return {x: 1.05 * far, y: -1.45 * far, z: 0.95 * far};
+}
+
+function drawSolid(node, solid) {
+  if (!solid.decoded) {
+    const grid = decode(solid.points, Uint16Array), faces = decode(solid.faces, solid.wide ? Uint32Array : Uint16Array), stress = decode(solid.stress, Uint16Array);
+    const coordinate = k => Float32Array.from({length: grid.length / 3}, (_, n) => solid.low[k] + grid[3 * n + k] * solid.step);
+    const corner = k => Uint32Array.from({length: faces.length / 3}, (_, n) => faces[3 * n + k]);
+    solid.decoded = {x: coordinate(0), y: coordinate(1), z: coordinate(2), i: corner(0), j: corner(1), k: corner(2), intensity: Float32Array.from(stress, s => s / 65535 * solid.highest * 1e-6)};
+  }
+  const hidden = {visible: false, showspikes: false};
+  Plotly.newPlot(node, [{
+    type: 'mesh3d', ...solid.decoded, colorscale: STRESS_SCALE, cmin: 0, cmax: solid.highest * 1e-6, flatshading: true, hovertemplate: '%{intensity:.2f} MPa<extra></extra>',
+    lighting: {ambient: 0.55, diffuse: 0.75, specular: 0.05, roughness: 0.8, fresnel: 0}, lightposition: {x: 2000, y: -4000, z: 9000},
+    colorbar: {title: {text: 'MPa', side: 'top', font: font()}, thickness: 9, len: 0.7, x: 0.98, xanchor: 'right', outlinewidth: 0, tickfont: font(), ticklen: 0, nticks: 6},
+  }], layout({margin: {l: 0, r: 0, t: 0, b: 0}, scene: {xaxis: hidden, yaxis: hidden, zaxis: hidden, aspectmode: 'data', dragmode: 'orbit', camera: {eye: eye(node), projection: {type: 'orthographic'}}}}), settings);
+}
+
+const SERIES = ['series-1', 'series-2', 'series-3', 'series-4'];
+
+function drawFlight(i) {
+  const box = element('histories'), d = designs[i];
+  if (!box) return;
+  element('flight-name').textContent = name(d);
+  const flight = report.details[d.detail]?.flight, reference = original && report.details[original.detail]?.flight;
+  box.querySelectorAll('.history > div').forEach(node => Plotly.purge(node));
+  const facts = report.flight_facts.map((f, k) => !known(d.fl[k]) ? '' : `<div><dt>${escaped(f.label)}</dt><dd>${withUnit(number(d.fl[k] * f.factor, 3), f.unit)}</dd></div>`);
+  element('flight-facts').innerHTML = facts.join('');
+  if (!flight) {
+    box.innerHTML = element('parts-absent')?.innerHTML ? '' : absent('Flight histories are');
+    return;
+  }
+  box.innerHTML = flight.charts.map((c, k) => `<article class="history"><h3>${escaped(c.label)} <small>${escaped(c.unit)}</small></h3><div id="history-${k}" role="img" aria-label="${escaped(c.label)} over time"></div></article>`).join('');
+  const other = reference && reference !== flight ? reference : null;
+  flight.charts.forEach((chart, k) => whenVisible(element(`history-${k}`), node => drawHistory(node, flight, chart, other, k)));
+}
+
+const decoded = (flight, series) => (series.decoded ??= Array.from(decode(series.values, Float32Array)));
+
+function drawHistory(node, flight, chart, reference, k) {
+  const time = decoded(flight, flight.time), traces = [];
+  const alone = chart.series.length === 1;
+  if (reference && alone && reference.charts[k]) traces.push({
+    type: 'scatter', mode: 'lines', x: decoded(reference, reference.time), y: decoded(reference, reference.charts[k].series[0]), name: 'original',
+    line: {color: colour('original'), width: 1.3, dash: 'dot'}, hovertemplate: '%{y:.3g} original<extra></extra>',
+  });
+  chart.series.forEach((series, n) => traces.push({
+    type: 'scatter', mode: 'lines', x: time, y: decoded(flight, series), name: series.label, line: {color: colour(SERIES[n % 4]), width: 1.6},
+    hovertemplate: `%{y:.3g} ${alone ? 'this design' : escaped(series.label)}<extra></extra>`,
+  }));
+  const legend = {orientation: 'h', x: 1, xanchor: 'right', y: 1.02, yanchor: 'bottom', font: font(), bgcolor: 'rgba(0,0,0,0)'};
+  Plotly.newPlot(node, traces, layout({
+    margin: {l: 48, r: 8, t: traces.length > 1 ? 24 : 8, b: 38}, xaxis: axis('Time (s)', {title: {text: 'Time (s)', font: font(), standoff: 4}}),
+    yaxis: axis('', {rangemode: chart.zero ? 'tozero' : 'normal'}), showlegend: traces.length > 1, legend, hovermode: 'x unified',
+  }), settings);
+}

@@ -1,0 +1,117 @@
+"""The run as the page's script reads it: one JSON document with compact rows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from codesign.evaluation import Evaluation
+from codesign.report.data import Quantity, ReportData, constraint_quantity, words
+from codesign.report.details import detail_key
+
+STATUS = {"feasible": 0, "infeasible": 1, "failed": 2}
+PART_KEYS = ("mass", "safety_factor", "peak_stress", "stress_error", "max_displacement")
+FLIGHT_FACTS = (
+    (Quantity("max_com_error", "Largest position error", "cm"), 100.0),
+    (Quantity("max_attitude_error", "Largest attitude error", "°"), 180.0 / np.pi),
+    (Quantity("min_thrust", "Lowest jet thrust", "N"), 1.0),
+    (Quantity("max_thrust", "Highest jet thrust", "N"), 1.0),
+    (Quantity("duration", "Flown", "s"), 1.0),
+)
+
+
+def page_document(
+    run: ReportData, details: dict[str, Any] | None = None, files: dict[str, Any] | None = None
+) -> dict[str, Any]:
+    """Everything the page shows, as JSON values. details, files: by `detail_key`."""
+    constraints = [key for key in _constraint_keys(run) if key != "qp_failures" or _any_nonzero(run, key)]
+    parts = list(dict.fromkeys(name for e in run.entries for name in e.evaluation.parts))
+    front = set(run.front)
+    rows = [
+        {"id": e.id, "front": i in front, **_row(run, e.evaluation, constraints, parts, files or {})}
+        for i, e in enumerate(run.entries)
+    ]
+    baseline = None
+    if run.baseline is not None:
+        baseline = run.find(run.baseline)
+        if baseline is None:
+            baseline = len(rows)
+            rows.append({"id": None, "front": False, **_row(run, run.baseline, constraints, parts, files or {})})
+    return {
+        "variables": [
+            {"key": v.name, "label": run.label(v), "unit": _unit(v.unit), "min": v.minimum, "max": v.maximum}
+            for v in run.variables
+        ],
+        "objectives": [{"key": o.key, "label": o.label, "unit": o.unit, "title": o.title} for o in run.objectives],
+        "constraints": [
+            {"key": key, "label": constraint_quantity(key).label, "rule": _rule(run, key)} for key in constraints
+        ],
+        "parts": [{"key": name, "label": words(name)} for name in parts],
+        "flight_facts": [{"label": q.label, "unit": q.unit, "factor": factor} for q, factor in FLIGHT_FACTS],
+        "designs": rows,
+        "baseline": baseline,
+        "recommended": run.recommended,
+        "best": run.best,
+        "progress": progress(run),
+        "details": details or {},
+        "command": run.export_command,
+    }
+
+
+def _row(
+    run: ReportData, evaluation: Evaluation, constraints: list[str], parts: list[str], files: dict[str, Any]
+) -> dict[str, Any]:
+    key = detail_key(evaluation)
+    row: dict[str, Any] = {
+        "x": [evaluation.design[v.name] for v in run.variables],
+        "status": STATUS[evaluation.status],
+        "reason": evaluation.reason,
+        "f": [_rounded(evaluation.objectives.get(k)) for k in run.keys],
+        "c": [_rounded(evaluation.constraints.get(k)) for k in constraints],
+        "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
+        "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
+        "fl": [_rounded(evaluation.flight.get(q.key)) for q, _ in FLIGHT_FACTS],
+        "detail": key,
+    }
+    if key in files:
+        row["files"] = files[key]
+    return row
+
+
+def _part(numbers: dict[str, Any]) -> list[float | None]:
+    return [_rounded(numbers.get(key)) for key in PART_KEYS]
+
+
+def _rounded(value: Any) -> float | None:
+    """Seven significant digits: the store keeps the exact number, the page is read by people."""
+    return None if value is None or not np.isfinite(value) else float(f"{value:.7g}")
+
+
+def _constraint_keys(run: ReportData) -> list[str]:
+    return list(dict.fromkeys(key for e in run.entries for key in e.evaluation.constraints))
+
+
+def _any_nonzero(run: ReportData, key: str) -> bool:
+    return any(e.evaluation.constraints.get(key) for e in run.entries)
+
+
+def _rule(run: ReportData, key: str) -> str:
+    if key not in run.limits:
+        return ""
+    sign, limit = run.limits[key]
+    return f"{ {'>=': '≥', '<=': '≤'}[sign] } {limit:g}"
+
+
+def _unit(unit: str) -> str:
+    return {"deg": "°", "1": ""}.get(unit, unit)
+
+
+def progress(run: ReportData) -> dict[str, list[float]]:
+    """Steps of the hypervolume, relative to the final one, for the chart of the search."""
+    volume = run.hypervolume
+    if not len(volume) or volume[-1] == 0:
+        return {"count": [], "volume": []}
+    steps = [0, *(np.flatnonzero(np.diff(volume) > 0) + 1).tolist(), len(volume) - 1]
+    unique = sorted(set(steps))
+    return {"count": [i + 1 for i in unique], "volume": [round(float(volume[i] / volume[-1]), 5) for i in unique]}

@@ -1,0 +1,100 @@
+/** The trade-off chart: two objectives as axes, a third as colour. */
+const front = {x: 0, y: Math.min(1, report.objectives.length - 1), ready: false, last: null};
+
+const points = test => designs.map((d, i) => i).filter(i => test(designs[i]) && known(designs[i].f[front.x]) && known(designs[i].f[front.y]));
+const third = () => report.objectives.map((o, k) => k).find(k => k !== front.x && k !== front.y);
+
+function hoverText(i) {
+  const d = designs[i];
+  const values = report.objectives.map((o, k) => `${escaped(o.label)} <b>${number(d.f[k])}</b> ${escaped(o.unit)} ${percent(change(d, k))}`);
+  const theta = report.variables.map((v, k) => `${escaped(v.label.toLowerCase())} ${plain(d.x[k])} ${escaped(v.unit)}`).join(', ');
+  return `<b>${name(d)}</b>  ${escaped(roles(d).join(', ') || STATUS[d.status])}<br>${values.join('<br>')}<br>${theta}`;
+}
+
+function markers(indices, marker, label) {
+  return {
+    type: 'scatter', mode: 'markers', name: label, marker, customdata: indices, text: indices.map(hoverText), hovertemplate: '%{text}<extra></extra>',
+    x: indices.map(i => designs[i].f[front.x]), y: indices.map(i => designs[i].f[front.y]),
+  };
+}
+
+/** Axis range that shows the front, the original and most feasible designs; far outliers stay reachable by zooming out. */
+function range(k) {
+  const near = points(d => d.status === FEASIBLE).map(i => designs[i].f[k]).sort((a, b) => a - b);
+  const must = points(d => d.front || d === original).map(i => designs[i].f[k]);
+  const all = must.concat(near.length ? [near[0], near[Math.floor(0.93 * (near.length - 1))]] : []);
+  if (!all.length) return undefined;
+  const low = Math.min(...all), high = Math.max(...all), pad = 0.07 * (high - low) || 0.05 * Math.abs(high) || 1;
+  return [low - pad, high + pad];
+}
+
+function frontTraces() {
+  const z = third(), best = points(d => d.front && d.status === FEASIBLE);
+  const scale = known(z) ? {
+    color: best.map(i => designs[i].f[z]), colorscale: 'Viridis', reversescale: false, showscale: true,
+    colorbar: {title: {text: report.objectives[z].title, side: 'right', font: font()}, thickness: 10, outlinewidth: 0, len: 0.8, tickfont: font(), ticklen: 0},
+  } : {color: colour('accent')};
+  const traces = [
+    markers(points(d => d.status === INFEASIBLE), {symbol: 'x-thin', size: 6, line: {width: 1.2, color: colour('lost')}}, 'infeasible'),
+    markers(points(d => d.status === FEASIBLE && !d.front), {size: 6, color: colour('dot'), opacity: 0.75}, 'feasible'),
+    markers(best, {size: 10, line: {width: 1, color: colour('bg')}, ...scale}, 'best compromise'),
+  ];
+  const at = points(d => d === original);
+  traces.push(markers(at, {symbol: 'diamond', size: 13, color: colour('original'), line: {width: 1.5, color: colour('bg')}}, 'original'));
+  const build = points(d => designs[report.recommended] === d);
+  traces.push(markers(build, {symbol: 'star', size: 17, color: colour('ink'), line: {width: 1.5, color: colour('bg')}}, 'recommended'));
+  traces.push({...markers([], {symbol: 'circle-open', size: 22, color: colour('accent'), line: {width: 2.5}}, 'selected'), hoverinfo: 'skip', hovertemplate: null});
+  traces.push({...markers([], {symbol: 'circle-open', size: 18, color: colour('ink'), line: {width: 1.5}}, 'hover'), hoverinfo: 'skip', hovertemplate: null});
+  return traces;
+}
+
+function drawFront() {
+  const plot = element('front');
+  if (!plot) return;
+  const [x, y] = [report.objectives[front.x], report.objectives[front.y]];
+  Plotly.react(plot, frontTraces(), layout({
+    xaxis: axis(x.title, {range: range(front.x)}), yaxis: axis(y.title, {range: range(front.y)}), hovermode: 'closest', dragmode: 'zoom', hoverdistance: 24,
+  }), settings);
+  if (!front.ready) {
+    front.ready = true;
+    plot.on('plotly_click', event => select(event.points[0].customdata, {scroll: true}));
+    plot.on('plotly_hover', event => hover(event.points[0].customdata, 'front'));
+    plot.on('plotly_unhover', () => hover(null, 'front'));
+  }
+  ring(5, state.selected);
+}
+
+/** Moves a ring (trace 5: selected, 6: hovered) to a design. */
+function ring(trace, i) {
+  const plot = element('front');
+  if (!plot || !front.ready) return;
+  const shown = known(i) && known(designs[i].f[front.x]) && known(designs[i].f[front.y]);
+  Plotly.restyle(plot, {x: [shown ? [designs[i].f[front.x]] : []], y: [shown ? [designs[i].f[front.y]] : []]}, [trace]);
+}
+
+function frontControls() {
+  for (const [id, which] of [['axis-x', 'x'], ['axis-y', 'y']]) {
+    const choice = element(id);
+    if (!choice) continue;
+    choice.value = front[which];
+    choice.addEventListener('change', () => {
+      const other = which === 'x' ? 'y' : 'x', chosen = Number(choice.value);
+      if (front[other] === chosen) front[other] = front[which];
+      front[which] = chosen;
+      element('axis-x').value = front.x;
+      element('axis-y').value = front.y;
+      drawFront();
+    });
+  }
+}
+
+/** Best feasible hypervolume by evaluation. */
+function drawProgress() {
+  const plot = element('progress');
+  if (!plot) return;
+  const steps = report.progress;
+  Plotly.react(plot, [{
+    type: 'scatter', mode: 'lines', x: steps.count, y: steps.volume, line: {color: colour('accent'), width: 2, shape: 'hv'},
+    hovertemplate: 'after %{x} designs: %{y:.1%}<extra></extra>',
+  }], layout({xaxis: axis('Designs evaluated', {rangemode: 'tozero'}), yaxis: axis('Front found', {tickformat: '.0%', range: [0, 1.04]}), hovermode: 'x'}), settings);
+}

@@ -1,0 +1,85 @@
+/** The table of designs: filter, sort, select by mouse or keyboard. */
+const table = {filter: 'front', key: null, descending: false};
+const FILTERS = {
+  front: d => d.front, feasible: d => d.status === FEASIBLE, all: () => true, rejected: d => d.status !== FEASIBLE,
+};
+
+function columns() {
+  const found = [{head: 'Design', value: d => d.id ?? -1, text: d => d.id === null ? 'original' : d.id}];
+  report.variables.forEach((v, k) => found.push({head: v.label, unit: v.unit, value: d => d.x[k], text: d => plain(d.x[k])}));
+  report.objectives.forEach((o, k) => found.push({
+    head: o.label, unit: o.unit, value: d => d.f[k],
+    text: d => known(d.f[k]) ? number(d.f[k]) + (original ? `<small class="${sense(change(d, k))}">${percent(change(d, k))}</small>` : '') : '–',
+  }));
+  report.constraints.forEach((c, k) => found.push({head: c.label, unit: c.rule, value: d => d.c[k], text: d => number(d.c[k], 3)}));
+  found.push({head: 'Remark', text_align: true, value: d => roles(d).join() || d.reason || '', text: d => escaped(roles(d).join(', ') || d.reason || STATUS[d.status])});
+  return found;
+}
+const shownColumns = columns();
+
+function compare(a, b) {
+  const missing = v => !known(v) || v === '';
+  if (missing(a) || missing(b)) return missing(a) - missing(b);
+  const order = typeof a === 'string' ? a.localeCompare(b) : a - b;
+  return table.descending ? -order : order;
+}
+
+function drawTable() {
+  const head = element('designs-head'), body = element('designs-body');
+  if (!body) return;
+  head.innerHTML = '<tr>' + shownColumns.map((c, k) => {
+    const sort = table.key === k ? (table.descending ? 'descending' : 'ascending') : 'none';
+    return `<th scope="col" class="${c.text_align ? 'text' : ''}" aria-sort="${sort}"><button type="button" data-column="${k}"><span>${escaped(c.head)}</span><small>${escaped(c.unit || '') || '&nbsp;'}</small></button></th>`;
+  }).join('') + '</tr>';
+  const rows = designs.map((d, i) => i).filter(i => FILTERS[table.filter](designs[i]));
+  if (table.key !== null) rows.sort((i, j) => compare(shownColumns[table.key].value(designs[i]), shownColumns[table.key].value(designs[j])));
+  table.rows = rows;
+  body.innerHTML = rows.map(i => `<tr tabindex="-1" data-design="${i}" aria-selected="false">` +
+    shownColumns.map(c => `<td class="${c.text_align ? 'text' : ''}">${c.text(designs[i])}</td>`).join('') + '</tr>').join('') ||
+    `<tr><td class="text" colspan="${shownColumns.length}">No such design in this run.</td></tr>`;
+  element('designs-count').textContent = `${rows.length} of ${designs.length} designs`;
+  document.querySelectorAll('[data-filter]').forEach(b => b.setAttribute('aria-pressed', b.dataset.filter === table.filter));
+  markRow();
+}
+
+const rowOf = i => element('designs-body')?.querySelector(`tr[data-design="${i}"]`);
+
+function markRow() {
+  const body = element('designs-body');
+  if (!body) return;
+  body.querySelectorAll('tr[aria-selected="true"]').forEach(r => { r.setAttribute('aria-selected', 'false'); r.tabIndex = -1; });
+  const row = rowOf(state.selected);
+  if (row) { row.setAttribute('aria-selected', 'true'); row.tabIndex = 0; }
+  else { const first = body.querySelector('tr[data-design]'); if (first) first.tabIndex = 0; }
+}
+
+/** Scrolls the table, not the page, to the selected row. */
+function revealRow() {
+  const row = rowOf(state.selected), box = element('designs-scroll');
+  if (row) box.scrollTop = row.offsetTop - box.clientHeight / 2;
+}
+
+function tableControls() {
+  const body = element('designs-body');
+  if (!body) return;
+  document.querySelectorAll('[data-filter]').forEach(b => b.addEventListener('click', () => { table.filter = b.dataset.filter; drawTable(); }));
+  element('designs-head').addEventListener('click', event => {
+    const button = event.target.closest('[data-column]');
+    if (!button) return;
+    const key = Number(button.dataset.column);
+    table.descending = table.key === key ? !table.descending : false;
+    table.key = key;
+    drawTable();
+    element('designs-head').querySelector(`[data-column="${key}"]`).focus();
+  });
+  const target = event => { const row = event.target.closest('tr[data-design]'); return row ? Number(row.dataset.design) : null; };
+  body.addEventListener('click', event => { const i = target(event); if (known(i)) select(i); });
+  body.addEventListener('mouseover', event => hover(target(event), 'table'));
+  body.addEventListener('mouseleave', () => hover(null, 'table'));
+  body.addEventListener('keydown', event => {
+    const row = event.target.closest('tr[data-design]');
+    const next = {ArrowDown: row?.nextElementSibling, ArrowUp: row?.previousElementSibling, Home: body.firstElementChild, End: body.lastElementChild}[event.key];
+    if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); select(Number(row.dataset.design)); }
+    else if (next) { event.preventDefault(); next.focus(); select(Number(next.dataset.design)); }
+  });
+}

@@ -1,0 +1,114 @@
+"""From a run's folder to what the report shows."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import Any
+
+from codesign.errors import CodesignError
+from codesign.evaluation import Evaluation
+from codesign.report.data import Entry, ReportData, objective_quantities, words
+from codesign.report.details import load_details
+from codesign.runs import Run, load_run
+
+logger = logging.getLogger(__name__)
+
+
+def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | None = None) -> ReportData:
+    """A run as the report shows it.
+
+    Args:
+        directory: the run's folder.
+        study: its study, None if it cannot be loaded any more; then titles, labels and limits are missing.
+        baseline: evaluation of the study's original design, where the run has none.
+    Raises: StoreError if there is no run.
+    """
+    run = load_run(directory)
+    evaluated = baseline or _stored_baseline(run, study)
+    family = study.config.objectives.family if study is not None else "rms"
+    return ReportData(
+        directory=Path(directory),
+        title=study.title if study is not None else words(run.study["name"]),
+        description=" ".join(study.description.split()) if study is not None else "",
+        variables=run.space.variables,
+        objectives=objective_quantities(run.objectives, family),
+        entries=tuple(
+            Entry(int(r.number if r.number is not None else k), r.evaluation, r.generation)
+            for k, r in enumerate(run.search_records)
+        ),
+        baseline=evaluated,
+        waiting=run.counts.get("queued", 0) + run.counts.get("running", 0),
+        planned=None if run.finished else run.settings.get("evaluations"),
+        limits={"safety_factor": (">=", study.config.constraints.safety_factor_min)} if study is not None else {},
+        provenance=provenance(run),
+        export_command=f"codesign export --study {run.study['source']}",
+        labels={name: v.label for name, v in study.config.variables.items()} if study is not None else {},
+        notes=_notes(run, study),
+    )
+
+
+def study_of(directory: Path) -> Any:
+    """The study of a run, or None with a logged reason: a report must come out without it too."""
+    from codesign.study import load_study
+
+    source = load_run(directory).study["source"]
+    try:
+        return load_study(source)
+    except CodesignError as error:
+        logger.warning("the run's study cannot be loaded: %s", error)
+        return None
+
+
+def same_study(directory: Path, study: Any) -> bool:
+    """Whether the study, as it is now, would give the run's numbers again."""
+    return study is not None and load_run(directory).study["hash"] == study.hash
+
+
+def _stored_baseline(run: Run, study: Any) -> Evaluation | None:
+    if study is None or study.baseline is None:
+        return None
+    grid = run.space.indices(study.baseline)
+    for record in run.records:
+        if record.grid == grid and record.trajectory == "":
+            return record.evaluation
+    wanted = study.baseline.to_dict()
+    for detail in load_details(run.out).values():
+        if detail.evaluation.design == wanted:
+            return detail.evaluation
+    return None
+
+
+def _notes(run: Run, study: Any) -> tuple[str, ...]:
+    if study is None:
+        return ("The study of this run cannot be loaded any more: titles, limits and the original design are missing.",)
+    if study.hash != run.study["hash"]:
+        return (
+            "The study, or the program, has changed since this run: its numbers are those of the older version, and "
+            "only stored ones are shown.",
+        )
+    return ()
+
+
+def provenance(run: Run) -> dict[str, str]:
+    """What made the numbers, for people."""
+    settings, first = run.settings, next((e.provenance for e in run.evaluations if e.provenance), {})
+    session: dict[str, Any] = run.sessions[-1] if run.sessions else {}
+    host = session.get("provenance", {})
+    search = f"{settings.get('algorithm', '?')}, seed {settings.get('seed', '?')}"
+    if settings.get("population"):
+        search += f", population {settings['population']}"
+    runtime = f"{host.get('machine', '')}, {host.get('processors', '?')} processors, Python {host.get('python', '?')}"
+    facts = {
+        "study": f"{run.study['name']} ({run.study['source']}), hash {run.study['hash']}",
+        "program": f"codesign {first.get('version', '?')}"
+        + (f", commit {first['commit']}" if first.get("commit") else ""),
+        "search": search,
+        "started": run.sessions[0]["started"] if run.sessions else "",
+        "time": f"{run.seconds:.0f} s in {len(run.sessions)} session{'s' if len(run.sessions) != 1 else ''}",
+        "outcome": str(session.get("outcome") or ""),
+        "machine": runtime if host else "",
+        "libraries": ", ".join(f"{k} {v}" for k, v in host.get("packages", {}).items()),
+        "run": str(run.out),
+    }
+    return {key: value for key, value in facts.items() if value}

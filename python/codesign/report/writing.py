@@ -1,0 +1,86 @@
+"""Writes the report of a run: details that are missing, the page, the figures."""
+
+from __future__ import annotations
+
+import logging
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from codesign.errors import CodesignError, StoreError
+from codesign.evaluation import Evaluation
+from codesign.report.data import ReportData
+from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
+from codesign.report.page.encode import page_detail
+from codesign.report.page.html import render
+from codesign.report.reading import read_report_data, same_study, study_of
+
+logger = logging.getLogger(__name__)
+
+PAGE = "report.html"
+
+
+@dataclass(frozen=True, slots=True)
+class ReportPaths:
+    """What a report consists of."""
+
+    html: Path
+    figures: tuple[Path, ...] = ()
+
+
+def write_report(run_directory: str | Path, *, study: Any = None, compute: bool = True) -> ReportPaths:
+    """Writes `report.html` into a run's folder, with its figures beside it in `figures/`.
+
+    Args:
+        run_directory: the run's folder.   study: its study, by default loaded from where the run found it.
+        compute: whether to evaluate the original design and to compute stress fields and flight histories of a handful
+            of designs, where the run does not have them yet; they are kept beside the run.
+    Raises: StoreError if there is no run, or the folder cannot be written.
+    """
+    directory = Path(run_directory)
+    study = study if study is not None else study_of(directory)
+    run = read_report_data(directory, study)
+    if compute and same_study(directory, study):
+        if run.baseline is None and study.baseline is not None:
+            run = replace(run, baseline=study.evaluate(study.baseline))
+        compute_details(study, run)
+    details = load_details(directory)
+    text = render(run, {key: page_detail(detail) for key, detail in _shown(run, details).items()})
+    return ReportPaths(html=_write(directory / PAGE, text))
+
+
+def compute_details(study: Any, run: ReportData) -> None:
+    """Computes and keeps the details of the highlighted designs that have none; a failure is logged, not raised."""
+    known = load_details(run.directory)
+    missing = [e for e in run.highlights.values() if detail_key(e) not in known and e.status != "failed"]
+    if not missing:
+        return
+    from codesign.report.compute import compute_detail
+
+    for evaluation in missing:
+        try:
+            save_detail(run.directory / FOLDER, compute_detail(study, evaluation))
+        except (CodesignError, OSError) as error:
+            logger.warning("no details of design %s: %s", evaluation.design, error)
+
+
+def _shown(run: ReportData, details: dict[str, Detail]) -> dict[str, Detail]:
+    """Details of designs that the page shows."""
+    designs: list[Evaluation] = [entry.evaluation for entry in run.entries]
+    if run.baseline is not None:
+        designs.append(run.baseline)
+    keys = {detail_key(evaluation) for evaluation in designs}
+    return {key: detail for key, detail in details.items() if key in keys}
+
+
+def _write(path: Path, text: str) -> Path:
+    """Writes a file completely or not at all."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        beside.rename(path)
+    except OSError as error:
+        beside.unlink(missing_ok=True)
+        raise StoreError(f"{path}: cannot be written: {error.strerror}") from error
+    return path

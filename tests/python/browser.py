@@ -1,0 +1,42 @@
+"""A real headless browser for the tests of pages: pages must be silent and must not talk to anyone."""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+
+
+def open_browser() -> Iterator[Any]:
+    """A Chromium driven by playwright; skips the test where one of them is missing."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    executable = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if executable is None:
+        pytest.skip("no Chromium on this machine (apt: chromium)")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=executable, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def visit(
+    browser: Any, address: str, *, width: int = 1280, dark: bool = False, local: tuple[str, ...] = ("file:",)
+) -> Iterator[Any]:
+    """Opens a page; afterwards checks that it logged no error and asked nobody else for anything."""
+    page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme="dark" if dark else "light")
+    problems: list[str] = []
+    page.on("console", lambda m: problems.append(f"console: {m.text}") if m.type == "error" else None)
+    page.on("pageerror", lambda error: problems.append(f"exception: {error}"))
+    page.on(
+        "request",
+        lambda r: None if r.url.startswith((*local, "data:", "blob:")) else problems.append(f"request: {r.url[:120]}"),
+    )
+    page.set_default_timeout(60_000)
+    page.goto(address, wait_until="load")
+    yield page
+    page.close()
+    assert problems == []

@@ -1,0 +1,112 @@
+"""The page in a real browser: silent, alone, and everything can be clicked."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import synthetic_run
+from browser import open_browser, visit
+from codesign.report import write_report
+from codesign.report.details import FOLDER, save_detail
+from codesign.report.reading import read_report_data
+from synthetic_details import detail
+
+STUDY = synthetic_run.Study()
+PEAK = detail(synthetic_run.evaluate(synthetic_run.BASELINE)).parts["jetpack_bracket"].von_mises.max() / 1e6
+POINT = """i => {
+  const plot = document.getElementById('front'), box = plot.getBoundingClientRect(), {xaxis, yaxis} = plot._fullLayout;
+  const f = designs[i].f;
+  return [box.left + xaxis._offset + xaxis.d2p(f[0]), box.top + yaxis._offset + yaxis.d2p(f[1])];
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    yield from open_browser()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder: Path = tmp_path_factory.mktemp("report") / "run"
+    synthetic_run.write_run(folder, synthetic_run.evaluations(200))
+    run = read_report_data(folder, STUDY, synthetic_run.evaluate(synthetic_run.BASELINE))
+    for evaluation in run.highlights.values():
+        save_detail(folder / FOLDER, detail(evaluation))
+    return write_report(folder, study=STUDY).html.as_uri()
+
+
+def test_the_chart_selects_on_click_rings_hovered_rows_and_changes_axes(browser, address):
+    with visit(browser, address) as page:
+        page.locator("#front").scroll_into_view_if_needed()
+        page.wait_for_selector("#front .points path")
+        wanted = page.evaluate("designs.findIndex((d, i) => d.front && i !== report.recommended)")
+        page.mouse.click(*page.evaluate(POINT, wanted))
+        page.wait_for_function("i => state.selected === i", arg=wanted)
+        name = f"Design {page.evaluate('i => designs[i].id', wanted)}"
+        assert page.locator("#card h2").inner_text() == name
+        assert name in page.locator("#parts-and-flight-title").inner_text()
+        assert page.locator("#designs-body tr[aria-selected=true]").get_attribute("data-design") == str(wanted)
+        row = page.locator("#designs-body tr").nth(2)
+        row.scroll_into_view_if_needed()
+        row.hover()
+        momentum = page.evaluate("i => designs[i].f[0]", int(row.get_attribute("data-design")))
+        page.wait_for_function("x => document.getElementById('front').data[6].x[0] === x", arg=momentum)
+        page.select_option("#axis-y", "2")
+        assert page.evaluate("document.getElementById('front').layout.yaxis.title.text") == "Thrust (N)"
+        page.select_option("#axis-x", "2")
+        assert page.evaluate("[front.x, front.y]") == [2, 0]
+
+
+def test_the_table_sorts_filters_and_follows_the_arrow_keys(browser, address):
+    with visit(browser, address) as page:
+        page.click("[data-filter=feasible]")
+        page.click("[data-column='5']")
+        values = page.evaluate("table.rows.map(i => designs[i].f[0])")
+        assert values == sorted(values)
+        page.click("[data-column='5']")
+        assert page.evaluate("table.rows.map(i => designs[i].f[0])") == values[::-1]
+        assert page.locator("th[aria-sort=descending]").count() == 1
+        rows = page.evaluate("table.rows")
+        page.locator("#designs-body tr").first.click()
+        page.keyboard.press("ArrowDown")
+        assert page.evaluate("state.selected") == rows[1]
+
+
+def test_parts_and_flight_are_drawn_for_designs_with_details_and_pointed_to_from_others(browser, address):
+    with visit(browser, address) as page:
+        page.evaluate("select(report.baseline)")
+        page.locator("#solid-0").scroll_into_view_if_needed()
+        page.wait_for_function("document.querySelector('#solid-0 canvas') !== null")
+        peak = page.evaluate("Math.max(...document.getElementById('solid-0').data[0].intensity)")
+        assert peak == pytest.approx(PEAK, rel=1e-4)
+        page.locator("#history-2").scroll_into_view_if_needed()
+        page.wait_for_function("document.querySelectorAll('#history-2 .scatterlayer .trace').length === 4")
+        page.evaluate("select(designs.findIndex(d => d.status === 0 && !report.details[d.detail]))")
+        assert "kept for Design" in page.locator("#parts-absent").inner_text()
+        page.locator("#parts-absent [data-select]").first.click()
+        assert page.evaluate("state.selected === report.recommended")
+
+
+@pytest.mark.parametrize(("dark", "width"), [(True, 1280), (False, 380)])
+def test_the_page_fits_its_window_in_light_and_dark(browser, address, dark, width):
+    with visit(browser, address, width=width, dark=dark) as page:
+        assert page.evaluate("document.documentElement.dataset.theme") == ("dark" if dark else "light")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        page.click("#theme")
+        assert page.evaluate("document.documentElement.dataset.theme") == ("light" if dark else "dark")
+
+
+@pytest.mark.parametrize("kind", ["none feasible", "one design", "empty"])
+def test_odd_runs_open_without_errors(browser, tmp_path, kind):
+    everything = synthetic_run.evaluations(80)
+    chosen = {
+        "none feasible": [e for e in everything if e.status != "feasible"],
+        "one design": everything[-1:],
+        "empty": [],
+    }[kind]
+    synthetic_run.write_run(tmp_path / "run", chosen)
+    with visit(browser, write_report(tmp_path / "run", study=STUDY, compute=False).html.as_uri()) as page:
+        assert page.locator("h1").inner_text() == STUDY.title
+        assert page.locator("#provenance").count() == 1
