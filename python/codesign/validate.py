@@ -10,7 +10,7 @@ from typing import Unpack
 
 from codesign.execute import Executor, Task
 from codesign.loop import WAIT, checked
-from codesign.optimize import Resources, cache_path, make_executor, stored_study
+from codesign.optimization import Resources, cache_path, make_executor, stored_study
 from codesign.problem import Problem
 from codesign.progress import Progress
 from codesign.runs import load_run

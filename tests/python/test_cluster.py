@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from codesign.errors import ExecutionError
-from codesign.optimize import optimize
+from codesign.optimization import optimize
 from codesign.runs import Run
 from fake_study import FakeStudy, study
 

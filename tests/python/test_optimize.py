@@ -9,7 +9,7 @@ import pytest
 from codesign.evaluation import Evaluation
 from codesign.evolution import ALGORITHMS, Evolution, EvolutionSettings
 from codesign.front import non_dominated
-from codesign.optimize import evaluate_designs, optimize, sweep
+from codesign.optimization import evaluate_designs, optimize, sweep
 from codesign.runs import Run
 from codesign.search import RandomSearch, start_points, sub_grid
 from fake_study import FakeStudy, study

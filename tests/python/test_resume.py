@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from codesign.errors import StoreError, StudyError
-from codesign.optimize import optimize, resume
+from codesign.optimization import optimize, resume
 from codesign.runs import load_run
 from codesign.store import DATABASE, RunStore
 from fake_study import FakeStudy, study
@@ -20,7 +20,7 @@ from fake_study import FakeStudy, study
 SCRIPT = """
 import json, sys
 from fake_study import FakeStudy
-from codesign.optimize import optimize, resume
+from codesign.optimization import optimize, resume
 out, source, settings = sys.argv[1:]
 if (__import__("pathlib").Path(out) / "run.sqlite").exists():
     resume(out, workers=2)

@@ -14,7 +14,7 @@ import pytest
 
 from codesign.errors import StoreError
 from codesign.evaluation import Evaluation
-from codesign.optimize import optimize, resume
+from codesign.optimization import optimize, resume
 from codesign.runs import load_run
 from codesign.store import DATABASE, VERSION, Generation, Record, RunStore
 from fake_study import study
@@ -123,7 +123,7 @@ def test_read_only_run_can_be_read_but_not_written(tmp_path) -> None:
     optimize(study(), out=tmp_path / "run", cache=None, generations=1)
     before = (tmp_path / "run" / DATABASE).read_bytes()
     script = (
-        "import sys; from codesign.runs import load_run; from codesign.optimize import resume\n"
+        "import sys; from codesign.runs import load_run; from codesign.optimization import resume\n"
         "from codesign.errors import StoreError\n"
         "print(len(load_run(sys.argv[1]).records))\n"
         "try: resume(sys.argv[1])\n"
@@ -146,7 +146,7 @@ def test_full_disk_stops_the_run_clearly_and_resume_goes_on(tmp_path) -> None:
     """The file may not grow past a limit, as on a full disk; later the limit is gone."""
     whole = optimize(study(seconds=0.001), out=tmp_path / "whole", cache=None, generations=12)
     script = (
-        "import sys; from codesign.optimize import optimize; from fake_study import study\n"
+        "import sys; from codesign.optimization import optimize; from fake_study import study\n"
         "from codesign.errors import StoreError\n"
         "try: optimize(study(seconds=0.001), out=sys.argv[1], cache=None, generations=12)\n"
         "except StoreError as error: print(error)\n"
@@ -170,7 +170,7 @@ def test_full_disk_stops_the_run_clearly_and_resume_goes_on(tmp_path) -> None:
 )
 def test_really_full_disk(tmp_path) -> None:
     script = (
-        "import subprocess, sys; from codesign.optimize import optimize, resume; from fake_study import study\n"
+        "import subprocess, sys; from codesign.optimization import optimize, resume; from fake_study import study\n"
         "from codesign.errors import StoreError\n"
         "try: optimize(study(seconds=0.001), out='/mnt/run', cache='/mnt/cache', generations=12)\n"
         "except StoreError as error: print(error)\n"

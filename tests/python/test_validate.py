@@ -6,7 +6,7 @@ import pytest
 
 from codesign.errors import StoreError
 from codesign.export import export
-from codesign.optimize import optimize, resume
+from codesign.optimization import optimize, resume
 from codesign.runs import compare_runs, list_runs, load_run
 from codesign.validate import validate
 from fake_study import study

@@ -36,6 +36,11 @@ def parameter(unit: str, minimum: float = -math.inf, maximum: float = math.inf, 
     return dataclasses.field(metadata={_PARAMETER: ParameterInfo(unit, minimum, maximum)}, **field)
 
 
+def parameter_units(part_class: type[Part]) -> dict[str, str]:
+    """Unit of each parameter of a part class."""
+    return {f.name: f.metadata[_PARAMETER].unit for f in dataclasses.fields(part_class) if _PARAMETER in f.metadata}
+
+
 @dataclass(frozen=True)
 class Part(ABC):
     """Base of all parts; a subclass is a frozen dataclass with parameters and a `shape()`. Lengths in mm inside it.

@@ -1,0 +1,345 @@
+"""Command line: parse, call, print. Text for people on a terminal, one JSON document on stdout with --json.
+
+Exit codes: 0 done; 1 ran, but the answer is negative (infeasible, failed designs); 2 bad input.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from codesign.errors import CodesignError, DesignError, StudyError
+
+if TYPE_CHECKING:
+    from codesign.evaluation import Evaluation
+    from codesign.runs import Run
+
+app = typer.Typer(
+    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="markdown"
+)
+out = Console()
+err = Console(stderr=True)
+
+StudyOption = Annotated[str, typer.Option("--study", "-s", help="A shipped study's name or the path of a study.toml.")]
+SetOption = Annotated[list[str], typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
+TrajectoryOption = Annotated[str | None, typer.Option("--trajectory", "-t", help="A trajectory of the study.")]
+WorkersOption = Annotated[int | None, typer.Option(min=1, help="Worker processes; default: the study's.")]
+ClusterOption = Annotated[str | None, typer.Option(help="Dask scheduler tcp://host:port, or local:N.")]
+RunArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run.")]
+DEFAULT_STUDY = "ironcub"
+EXAMPLE_DESIGN = "--set angle=15 --set distance=42 --set offset=80 --set length=108"
+
+
+def parse_design(assignments: list[str]) -> dict[str, float]:
+    """Design values from NAME=VALUE texts; raises DesignError for anything else."""
+    design: dict[str, float] = {}
+    for text in assignments:
+        name, equals, value = text.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = float("nan")
+        if not equals or number != number:
+            raise DesignError(f"--set {text}: expected NAME=NUMBER, for example angle=15")
+        if name.strip() in design:
+            raise DesignError(f"--set {text}: {name.strip()} is given twice")
+        design[name.strip()] = number
+    return design
+
+
+def print_json(document: Any) -> None:
+    """One JSON document on stdout, nothing else."""
+    sys.stdout.write(json.dumps(document, indent=1, allow_nan=False) + "\n")
+
+
+def print_evaluation(evaluation: Evaluation) -> None:
+    """Text summary of one evaluation."""
+    colour = {"feasible": "green", "infeasible": "yellow", "failed": "red"}[evaluation.status]
+    out.print(f"[bold {colour}]{evaluation.status}[/]  " + "  ".join(f"{k}={v}" for k, v in evaluation.design.items()))
+    if evaluation.reason:
+        out.print(evaluation.reason)
+    table = Table(show_header=False, box=None, pad_edge=False)
+    for group in (evaluation.objectives, evaluation.constraints):
+        for key, value in group.items():
+            table.add_row(key, f"{value:.5g}")
+    for name, part in evaluation.parts.items():
+        table.add_row(
+            name,
+            f"{part['mass']:.4f} kg, SF {part['safety_factor']:.1f}, peak {part['peak_stress'] / 1e6:.2f} MPa"
+            f" (± {part['stress_error'] / 1e6:.2f})",
+        )
+    for key in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust"):
+        if key in evaluation.flight:
+            table.add_row(f"flight {key}", f"{evaluation.flight[key]:.4g}")
+    table.add_row("seconds", "  ".join(f"{k} {v:.2f}" for k, v in evaluation.seconds.items()))
+    out.print(table)
+
+
+@app.command(epilog=f"Example: `codesign evaluate {EXAMPLE_DESIGN}`")
+def evaluate(
+    set_: SetOption,
+    study: StudyOption = DEFAULT_STUDY,
+    trajectory: TrajectoryOption = None,
+    as_json: JsonOption = False,
+) -> int:
+    """One design through the whole chain: parts, stress, robot, flight, objectives."""
+    from codesign.study import load_study
+
+    evaluation = load_study(study).evaluate(parse_design(set_), trajectory=trajectory)
+    if as_json:
+        print_json(evaluation.to_dict())
+    else:
+        print_evaluation(evaluation)
+    return 0 if evaluation.status == "feasible" else 1
+
+
+@app.command(epilog="Example: `codesign fly robot.urdf --trajectory envelope --json`")
+def fly(
+    robot: Annotated[Path, typer.Argument(help="URDF with the study's joints and jets.")],
+    study: StudyOption = DEFAULT_STUDY,
+    trajectory: TrajectoryOption = None,
+    jets: Annotated[str | None, typer.Option(help="Jet model: integrator or turbine.")] = None,
+    as_published: Annotated[bool, typer.Option(help="Accept links with non-physical inertia.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Flies any URDF that has the study's joints and jets."""
+    from codesign.pipeline import fly_robot
+    from codesign.study import load_study
+
+    result = fly_robot(load_study(study), robot, trajectory=trajectory, jets=jets, as_published=as_published)
+    if as_json:
+        print_json(result)
+    else:
+        table = Table(show_header=False, box=None, pad_edge=False)
+        table.add_row("status", result["status"] + (f": {result['reason']}" if result["reason"] else ""))
+        for family, values in result["objective_families"].items():
+            for key, value in values.items():
+                table.add_row(f"{family} {key}", f"{value:.8g}")
+        for key, value in result["flight"].items():
+            table.add_row(key, str(value) if isinstance(value, str) else f"{value:.6g}")
+        out.print(table)
+    return 0 if result["status"] == "completed" else 1
+
+
+@app.command(epilog="Example: `codesign optimize --population 25 --generations 40 --seed 1 --workers 2 --out runs/a`")
+def optimize(
+    study: StudyOption = DEFAULT_STUDY,
+    population: Annotated[int | None, typer.Option(min=2, help="Designs a generation.")] = None,
+    generations: Annotated[int | None, typer.Option(min=1, help="Generations, the start population included.")] = None,
+    seed: Annotated[int, typer.Option(help="Decides everything that is random.")] = 1,
+    workers: WorkersOption = None,
+    cluster: ClusterOption = None,
+    out_dir: Annotated[Path | None, typer.Option("--out", help="New folder of the run.")] = None,
+    algorithm: Annotated[str, typer.Option(help="nsga2, nsga3, agemoea, agemoea2, smsemoa or random.")] = "nsga2",
+    start: Annotated[str, typer.Option(help="sobol, sobol-plain (as in the paper) or random.")] = "sobol",
+    steady: Annotated[bool, typer.Option(help="Offspring without waiting for whole generations.")] = False,
+    wall_time: Annotated[float | None, typer.Option(help="Seconds after which no new design is tried.")] = None,
+    stall_generations: Annotated[int | None, typer.Option(help="Stop when the hypervolume stands still.")] = None,
+    no_cache: Annotated[bool, typer.Option("--no-cache", help="Compute everything again.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """The study: searches the design grid for the best compromises."""
+    from codesign.optimization import optimize as run_optimize
+    from codesign.progress import ProgressBar
+    from codesign.study import load_study
+
+    loaded = load_study(study)
+    folder = out_dir or Path("runs") / f"{loaded.name}-{datetime.now(UTC):%Y%m%d-%H%M%S}"
+    try:
+        with ProgressBar(loaded.name) as bar:
+            run = run_optimize(
+                loaded,
+                out=folder,
+                population=population,
+                generations=generations,
+                seed=seed,
+                algorithm=algorithm,
+                workers=workers,
+                cluster=cluster,
+                start=start,
+                steady=steady,
+                wall_time=wall_time,
+                stall_generations=stall_generations,
+                cache=None if no_cache else "default",
+                progress=bar,
+            )
+    except ValueError as error:
+        raise StudyError(str(error)) from error
+    except KeyboardInterrupt:
+        err.print(f"interrupted; continue with: codesign resume {folder}")
+        return 130
+    return print_run(run, as_json)
+
+
+@app.command(epilog="Example: `codesign resume runs/a`")
+def resume(
+    run_dir: RunArgument,
+    workers: WorkersOption = None,
+    cluster: ClusterOption = None,
+    evaluations: Annotated[int | None, typer.Option(help="A larger budget than the run had.")] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Continues an interrupted run, as if it had never stopped."""
+    from codesign.optimization import resume as run_resume
+    from codesign.progress import ProgressBar
+
+    try:
+        with ProgressBar(run_dir.name) as bar:
+            run = run_resume(run_dir, workers=workers, cluster=cluster, evaluations=evaluations, progress=bar)
+    except KeyboardInterrupt:
+        err.print(f"interrupted; continue with: codesign resume {run_dir}")
+        return 130
+    return print_run(run, as_json)
+
+
+def print_run(run: Run, as_json: bool) -> int:
+    """Summary of a run and its front; exit code 1 if nothing is feasible."""
+    from codesign.runs import summarize
+
+    summary = summarize(run)
+    front = [record.evaluation for record in run.front]
+    if as_json:
+        print_json(summary | {"front": [evaluation.to_dict() for evaluation in front]})
+    else:
+        counts = "  ".join(f"{status} {count}" for status, count in summary["statuses"].items())
+        out.print(f"[bold]{run.out}[/]: {summary['designs']} designs ({counts}) in {summary['seconds']:.1f} s")
+        table = Table(title=f"Pareto front, {len(front)} designs", title_justify="left")
+        rows = sorted(front, key=lambda evaluation: list(evaluation.objectives.values()))
+        for evaluation in rows[:20]:
+            if not table.columns:
+                for name in (*evaluation.design, *evaluation.objectives, "safety_factor"):
+                    table.add_column(name, justify="right")
+            values = [*evaluation.design.values(), *evaluation.objectives.values()]
+            table.add_row(*(f"{value:.5g}" for value in (*values, evaluation.constraints.get("safety_factor", 0.0))))
+        out.print(table)
+        if len(rows) > 20:
+            out.print(f"… and {len(rows) - 20} more")
+    return 0 if front else 1
+
+
+@app.command("runs", epilog="Example: `codesign runs runs --json`")
+def runs_command(
+    folder: Annotated[Path, typer.Argument(help="Folder that holds runs, at any depth.")] = Path("runs"),
+    compare: Annotated[bool, typer.Option(help="Compare their fronts in one common box.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Lists the runs in a folder, or compares their fronts."""
+    from codesign.runs import compare_runs, find_runs, list_runs, load_run
+
+    rows = compare_runs([load_run(run) for run in find_runs(folder)]) if compare else list_runs(folder)
+    if as_json:
+        print_json(rows)
+        return 0
+    table = Table()
+    columns = ("run", "study", "algorithm", "seed", "designs", "front", "hypervolume", "seconds", "outcome")
+    for name in columns:
+        table.add_column(name)
+    for row in rows:
+        values = [row.get(name, "") for name in columns]
+        table.add_row(*(f"{v:.5g}" if isinstance(v, float) else str(v) for v in values))
+    out.print(table)
+    return 0
+
+
+@app.command(epilog="Example: `codesign report runs/a`")
+def report(run_dir: RunArgument, as_json: JsonOption = False) -> int:
+    """One self-contained HTML page and the figures of a run."""
+    from codesign.report import write_report
+
+    paths = write_report(run_dir)
+    if as_json:
+        print_json({"page": str(paths.html), "figures": [str(path) for path in paths.figures]})
+    else:
+        out.print(f"report: {paths.html.resolve()}", soft_wrap=True)
+    return 0
+
+
+@app.command(
+    epilog="Example: `codesign export --set angle=15 --set distance=42 --set offset=80 --set length=108 --out d`"
+)
+def export(
+    set_: SetOption,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the files; created.")],
+    study: StudyOption = DEFAULT_STUDY,
+    as_json: JsonOption = False,
+) -> int:
+    """Manufacturing and simulation files of one design: STL, STEP, URDF with meshes, VTU, JSON."""
+    from codesign.design_files import export_design
+    from codesign.study import load_study
+
+    written = export_design(load_study(study), parse_design(set_), out_dir)
+    if as_json:
+        print_json({"files": [str(path) for path in written]})
+    else:
+        for path in written:
+            out.print(str(path), soft_wrap=True, highlight=False)
+    return 0
+
+
+@app.command(
+    epilog="Example: `codesign new my_study && codesign evaluate --study my_study --set reach=200 --set height=30`"
+)
+def new(folder: Annotated[Path, typer.Argument(help="New folder for the study.")]) -> int:
+    """Writes a commented, runnable study to start from."""
+    from codesign.study import new_study
+
+    for path in new_study(folder):
+        out.print(str(path), soft_wrap=True, highlight=False)
+    return 0
+
+
+@app.command(epilog="Example: `codesign doctor`")
+def doctor(as_json: JsonOption = False) -> int:
+    """Versions, BLAS in use, cores, and what is missing."""
+    from codesign.doctor import diagnose
+
+    report = diagnose()
+    if as_json:
+        print_json(report)
+    else:
+        table = Table(show_header=False, box=None, pad_edge=False)
+        for key, value in report.items():
+            if isinstance(value, dict):
+                for name, item in value.items():
+                    table.add_row(f"{key} {name}", str(item))
+            else:
+                table.add_row(key, ", ".join(value) if isinstance(value, list) else str(value))
+        out.print(table)
+    return 1 if report["missing"] else 0
+
+
+def main() -> None:
+    """Entry point: runs the command line and turns typed errors into exit code 2."""
+    logging.basicConfig(level=logging.WARNING, stream=sys.stderr, format="%(levelname)s %(name)s: %(message)s")
+    command = typer.main.get_command(app)
+    try:
+        code = command.main(standalone_mode=False)
+    except CodesignError as error:
+        if "--json" in sys.argv:
+            print_json({"error": {"type": type(error).__name__, "message": str(error)}})
+        err.print(f"[bold red]{type(error).__name__}[/]: {error}", highlight=False)
+        code = 2
+    except typer.Exit as stop:
+        code = stop.exit_code
+    except Exception as error:
+        if not hasattr(error, "exit_code") or not hasattr(error, "show"):
+            raise
+        error.show()
+        code = 2
+    except KeyboardInterrupt:
+        err.print("interrupted")
+        code = 130
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+if __name__ == "__main__":
+    main()

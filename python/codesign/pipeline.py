@@ -1,0 +1,260 @@
+"""The chain: design -> parts -> stress, robot -> flight -> objectives and constraints."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from codesign import _core
+from codesign import dynamics as dyn
+from codesign.analysis import PressedFace, StressSettings, part_case, part_document
+from codesign.config import StudyConfig
+from codesign.design import Design
+from codesign.errors import CodesignError, StudyError
+from codesign.evaluation import Evaluation
+from codesign.fem import Material
+from codesign.flight_setup import flight_settings, joint_names
+from codesign.geometry.part import Part
+from codesign.inertial import Inertial
+from codesign.provenance import provenance
+from codesign.robot import PartBody, assemble
+from codesign.units import GIGA, MEGA, MILLIMETRE
+from codesign.urdf import RobotDescription
+
+if TYPE_CHECKING:
+    from codesign.cache import PartCache
+    from codesign.study import Study
+
+
+def evaluate(study: Study, design: Design, trajectory: str | None = None, cache: PartCache | None = None) -> Evaluation:
+    """One design through the whole chain.
+
+    A CodesignError on the way (no mesh, say) gives a failed evaluation; anything else is a bug and is raised.
+    """
+    try:
+        return _evaluate(study, design, trajectory, cache)
+    except CodesignError as error:
+        return Evaluation.failure(design.to_dict(), f"{type(error).__name__}: {error}", provenance(study.hash))
+
+
+def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartCache | None) -> Evaluation:
+    start = time.perf_counter()
+    config = study.configured(design)
+    settings = flight_settings(config.flight, _trajectory(config, trajectory))
+    parts = build_parts(study, design, config)
+    known: dict[str, dict[str, Any]] = {}
+    if cache is not None:
+        found = {name: cache.get(_part_key(study, part)) for name, part in parts.items()}
+        known = {name: document for name, document in found.items() if document is not None}
+    masses = {name: _mass(known[name]) if name in known else part.mass_properties() for name, part in parts.items()}
+    robot = _assemble(study, config, parts, masses)
+    cases = {name: part_case(part, stress_settings(config, name)) for name, part in parts.items() if name not in known}
+    built = time.perf_counter()
+    result = _core.evaluate(list(cases.values()), robot.to_text(), settings)
+    documents: dict[str, dict[str, Any]] = {}
+    for name, part in parts.items():
+        if name in known:
+            documents[name] = known[name]
+            continue
+        analysis = result.parts[list(cases).index(name)]
+        documents[name] = part_document(masses[name], analysis)
+        if cache is not None:
+            cache.put(_part_key(study, part), documents[name])
+    flight = result.flight
+    families = objective_families(flight)
+    constraints, violations = _constraints(config, documents, flight)
+    feasible = not any(violations.values())
+    lost = not flight.completed
+    return Evaluation(
+        design=design.to_dict(),
+        status="feasible" if feasible else "infeasible",
+        reason=None if feasible else _reason(config, documents, flight),
+        objectives={} if lost else {n: families[config.objectives.family][n] for n in config.objectives.minimise},
+        objective_families={} if lost else families,
+        constraints=constraints,
+        violations=violations,
+        parts=documents,
+        flight=flight_document(trajectory or config.flight.trajectory, flight, result.seconds["flight"]),
+        seconds={"geometry": built - start, **result.seconds, "total": time.perf_counter() - start},
+        provenance=provenance(study.hash),
+    )
+
+
+def build_parts(study: Study, design: Mapping[str, float], config: StudyConfig | None = None) -> dict[str, Part]:
+    """Parts of a design by name."""
+    config = config or study.configured(design)
+    return {
+        part.name: study.part_classes[part.name](
+            **{parameter: design[variable] for parameter, variable in part.parameters.items()},
+            **part.options,
+            density=config.materials[part.material].density_kg_m3,
+        )
+        for part in config.parts
+    }
+
+
+def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
+    """Stress settings of one part."""
+    part = next(part for part in config.parts if part.name == part_name)
+    material, stress = config.materials[part.material], config.fem
+    return StressSettings(
+        material=Material(
+            part.material,
+            young_modulus=material.young_modulus_gpa * GIGA,
+            poisson_ratio=material.poisson_ratio,
+            density=material.density_kg_m3,
+            yield_strength=material.yield_strength_mpa * MEGA,
+        ),
+        supports=tuple(part.supports),
+        loads=tuple(PressedFace(load.face, load.pressing_n) for load in part.loads),
+        geometry=stress.geometry,
+        load=stress.load,
+        support=stress.support,
+        accuracy=stress.accuracy,
+        exclusion_distance=stress.exclusion_distance_mm * MILLIMETRE,
+        tolerance=stress.tolerance,
+    )
+
+
+def build_robot(study: Study, design: Mapping[str, float]) -> RobotDescription:
+    """The base robot with this design's parts in it."""
+    config = study.configured(design)
+    parts = build_parts(study, design, config)
+    return _assemble(study, config, parts, {name: part.mass_properties() for name, part in parts.items()})
+
+
+def _assemble(
+    study: Study, config: StudyConfig, parts: Mapping[str, Part], masses: Mapping[str, Any]
+) -> RobotDescription:
+    bodies = {name: PartBody(masses[name], part.interfaces()) for name, part in parts.items()}
+    return assemble(study.base_robot, {part.name: part.placements for part in config.parts}, bodies)
+
+
+def fly_robot(
+    study: Study,
+    robot: str | Path,
+    trajectory: str | None = None,
+    jets: str | None = None,
+    as_published: bool = False,
+) -> dict[str, Any]:
+    """Flies any robot that has the study's joints and jets.
+
+    Args:
+        robot: path of a URDF or its text. trajectory, jets: instead of the study's. as_published: accept non-physical
+            inertias.
+    Returns: the JSON document of `codesign fly`.
+    Raises: UrdfError, StudyError.
+    """
+    config = study.config
+    settings = flight_settings(config.flight, _trajectory(config, trajectory), jets)
+    start = time.perf_counter()
+    model = dyn.load_urdf(robot, joints=joint_names(config.flight), as_published=as_published)
+    loaded = time.perf_counter()
+    log = dyn.simulate_flight(model, settings)
+    end = time.perf_counter()
+    completed = log.completed
+    return {
+        "robot": str(robot),
+        "status": "completed" if completed else "lost",
+        "reason": None if completed else _flight_reason(log),
+        "objectives": objective_families(log)[config.objectives.family],
+        "objective_families": objective_families(log),
+        "objective_parts": {"rms": _parts_of(log, "rms", config), "script": _parts_of(log, "script", config)},
+        "constraints": {"qp_failures": log.qp_failures},
+        "flight": flight_document(trajectory or config.flight.trajectory, log, end - loaded),
+        "seconds": {"load": loaded - start, "flight": end - loaded, "total": end - start},
+        "provenance": provenance(study.hash),
+    }
+
+
+def objective_families(log: dyn.FlightLog) -> dict[str, dict[str, float]]:
+    """All objective families of a flight; a number that is not finite is left out."""
+    families = {}
+    for family in ("rms", "script", "paper"):
+        values = getattr(log, family)
+        named = {name: getattr(values, name) for name in ("momentum", "joint_velocity", "thrust")}
+        families[family] = {name: value for name, value in named.items() if math.isfinite(value)}
+    return families
+
+
+def flight_document(trajectory: str, log: dyn.FlightLog, seconds: float) -> dict[str, Any]:
+    """Tracking figures of a flight for JSON, SI units; None for a number that is not finite."""
+    document: dict[str, Any] = {"trajectory": trajectory, "duration": (log.samples - 1) * log.step}
+    for name in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust", "max_torque", "min_clearance"):
+        value = getattr(log, name)
+        document[name] = value if math.isfinite(value) else None
+    document["ground_touched"] = bool(log.ground_touched)
+    document["completed"] = log.completed
+    if not document["completed"]:
+        document["failure_time"] = log.failure_time
+        document["failure_reason"] = log.failure_reason
+    document["seconds"] = seconds
+    return document
+
+
+def _part_key(study: Study, part: Part) -> str:
+    """Cache key of a part's numbers: everything that decides a result, and the part's own parameters."""
+    parameters = json.dumps(part.parameters, sort_keys=True)
+    return f"{study.hash}/{part.name}/{hashlib.sha256(parameters.encode()).hexdigest()[:24]}"
+
+
+def _mass(document: Mapping[str, Any]) -> Inertial:
+    return Inertial(document["mass"], np.array(document["com"]), np.array(document["inertia"]))
+
+
+def _parts_of(log: dyn.FlightLog, family: str, config: StudyConfig) -> dict[str, float]:
+    parts = getattr(log, f"{family}_parts")
+    groups = [group.name for group in config.flight.joint_groups if group.velocity_weight > 0]
+    return {
+        "linear_momentum": parts.linear_momentum,
+        "angular_momentum": parts.angular_momentum,
+        **dict(zip(groups, parts.joint_velocity, strict=True)),
+    }
+
+
+def _trajectory(config: StudyConfig, name: str | None) -> Any:
+    name = name or config.flight.trajectory
+    if name not in config.trajectories:
+        raise StudyError(f"no trajectory {name!r}; this study has {', '.join(config.trajectories)}")
+    return config.trajectories[name]
+
+
+def _constraints(
+    config: StudyConfig, parts: Mapping[str, Mapping[str, Any]], flight: dyn.FlightLog
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Constraint values, and by how much of its limit each is violated (0: it holds)."""
+    lost = not flight.completed
+    smallest = min((part["safety_factor"] for part in parts.values()), default=math.inf)
+    constraints = {"qp_failures": float(max(flight.qp_failures, int(lost)))}
+    violations = {}
+    if parts:
+        required = config.constraints.safety_factor_min
+        constraints["safety_factor"] = smallest
+        violations["safety_factor"] = max(0.0, (required - smallest) / required)
+    if config.constraints.flight_completed:
+        # The share of the flight that was missed: of two lost designs the one that flew longer is better.
+        missed = 1.0 - flight.failure_time / config.flight.duration_s if lost else 0.0
+        violations["qp_failures"] = max(missed, 1e-6) if lost else 0.0
+    return constraints, violations
+
+
+def _reason(config: StudyConfig, parts: Mapping[str, Mapping[str, Any]], flight: dyn.FlightLog) -> str:
+    reasons = [
+        f"{name}: safety factor {part['safety_factor']:.2f} below {config.constraints.safety_factor_min:g}"
+        for name, part in parts.items()
+        if part["safety_factor"] < config.constraints.safety_factor_min
+    ]
+    if not flight.completed:
+        reasons.append(_flight_reason(flight))
+    return "; ".join(reasons)
+
+
+def _flight_reason(flight: dyn.FlightLog) -> str:
+    return f"flight lost at {flight.failure_time:.2f} s: {flight.failure_reason}"
