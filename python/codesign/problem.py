@@ -82,6 +82,6 @@ class Problem(Protocol):
         """Defaults of how evaluations run."""
 
     def evaluate(
-        self, design: Mapping[str, float], trajectory: str | None = None, cache: PartCache | None = None
+        self, design: Mapping[str, float], /, trajectory: str | None = None, cache: PartCache | None = None
     ) -> Evaluation:
         """One design, on the study's own trajectory unless another is named."""
