@@ -1,13 +1,23 @@
-"""Triangle meshes in files."""
+"""Triangle meshes in files: STL and 3MF for workshops (mm), GLB for viewers (m)."""
 
 from __future__ import annotations
 
+import io
+import json
 import os
+import zipfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
+import numpy.typing as npt
 
-from codesign.geometry.files import replacing
+from codesign.files import write_bytes
+from codesign.geometry.profile import Vector
 from codesign.geometry.solid import Solid
+from codesign.units import MILLIMETRE
 
 _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -20,5 +30,91 @@ def write_stl(solid: Solid, path: str | os.PathLike[str], title: str = "") -> No
     records["normal"] = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     records["corners"] = corners
     header = f"codesign {title} [mm]".encode("ascii", "replace")[:80].ljust(80)
-    with replacing(path) as temporary:
-        temporary.write_bytes(header + np.uint32(len(records)).tobytes() + records.tobytes())
+    write_bytes(Path(path), header + np.uint32(len(records)).tobytes() + records.tobytes())
+
+
+def write_3mf(solids: Mapping[str, Solid], path: str | os.PathLike[str]) -> None:
+    """3MF in mm with one named object per solid, each where it was modelled."""
+    objects, items = [], []
+    for number, (name, solid) in enumerate(solids.items(), start=1):
+        vertices = "".join(f'<vertex x="{x:.7g}" y="{y:.7g}" z="{z:.7g}"/>' for x, y, z in solid.points.tolist())
+        triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in solid.triangles.tolist())
+        mesh = f"<mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh>"
+        objects.append(f'<object id="{number}" name={quoteattr(name)} type="model">{mesh}</object>')
+        items.append(f'<item objectid="{number}"/>')
+    model = (
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        '<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
+        f"<resources>{''.join(objects)}</resources><build>{''.join(items)}</build></model>"
+    )
+    types = (
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+        '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
+    )
+    relations = (
+        '<?xml version="1.0" encoding="UTF-8"?>'
+        '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+        '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
+        'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+    )
+    package = io.BytesIO()
+    with zipfile.ZipFile(package, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in (("[Content_Types].xml", types), ("_rels/.rels", relations), ("3D/3dmodel.model", model)):
+            archive.writestr(name, text)
+    write_bytes(Path(path), package.getvalue())
+
+
+def write_glb(
+    meshes: Mapping[str, Solid], nodes: Sequence[tuple[str, str, Vector]], path: str | os.PathLike[str]
+) -> None:
+    """Binary glTF 2.0 in metres: meshes by name, placed by nodes (name, mesh name, root_T_node (4, 4) [m]).
+
+    glTF has y up: a root node turns our z there. Without normals in the file, viewers shade every triangle flat.
+    """
+    buffers: list[bytes] = []
+    views: list[dict[str, object]] = []
+    accessors: list[dict[str, object]] = []
+
+    def add(array: npt.NDArray[Any], target: int, accessor: dict[str, object]) -> int:
+        offset = sum(len(buffer) for buffer in buffers)
+        views.append({"buffer": 0, "byteOffset": offset, "byteLength": array.nbytes, "target": target})
+        buffers.append(array.tobytes())  # multiples of four bytes, as the format wants
+        accessors.append({"bufferView": len(views) - 1, **accessor})
+        return len(accessors) - 1
+
+    gltf_meshes = []
+    for name, solid in meshes.items():
+        points = (solid.points * MILLIMETRE).astype("<f4")
+        bounds = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
+        position = add(points, 34962, {"componentType": 5126, "count": len(points), "type": "VEC3", **bounds})
+        indices = solid.triangles.astype("<u4")
+        index = add(indices, 34963, {"componentType": 5125, "count": indices.size, "type": "SCALAR"})
+        primitive = {"attributes": {"POSITION": position}, "indices": index, "material": 0}
+        gltf_meshes.append({"name": name, "primitives": [primitive]})
+    order = list(meshes)
+    placed = [
+        {"name": name, "mesh": order.index(mesh), "matrix": np.asarray(pose, dtype=float).T.ravel().tolist()}
+        for name, mesh, pose in nodes
+    ]
+    metal = {"baseColorFactor": [0.75, 0.76, 0.78, 1.0], "metallicFactor": 0.6, "roughnessFactor": 0.5}
+    z_to_y = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+    document = {
+        "asset": {"version": "2.0", "generator": "codesign"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "root", "rotation": z_to_y, "children": list(range(1, len(placed) + 1))}, *placed],
+        "meshes": gltf_meshes,
+        "materials": [{"name": "metal", "pbrMetallicRoughness": metal}],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": sum(len(buffer) for buffer in buffers)}],
+    }
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    binary = b"".join(buffers)
+    chunks = [len(text).to_bytes(4, "little"), b"JSON", text, len(binary).to_bytes(4, "little"), b"BIN\0", binary]
+    body = b"".join(chunks)
+    header = b"glTF" + (2).to_bytes(4, "little") + (12 + len(body)).to_bytes(4, "little")
+    write_bytes(Path(path), header + body)

@@ -19,6 +19,7 @@ from codesign.geometry.surface import SurfaceMesh, surface_mesh
 
 _PARAMETER = "codesign.parameter"
 MASS_SEGMENTS = 24  # of the coarser of the two meshes that mass properties are extrapolated from
+EXPORT_RESOLUTION = Resolution(segments=4096, chord_mm=0.01)
 FEM_RESOLUTION = Resolution(segments=48)  # stresses do not change with more
 
 
@@ -87,7 +88,8 @@ class Part(ABC):
     ) -> None:
         """Raises GeometryError, naming parameter, value, limit and reason, if the parameter is outside its limits."""
         value = getattr(self, parameter)
-        unit = next((f.metadata[_PARAMETER].unit for f in dataclasses.fields(self) if f.name == parameter), "")
+        infos = (f.metadata.get(_PARAMETER) for f in dataclasses.fields(self) if f.name == parameter)
+        unit = next((info.unit for info in infos if info is not None), "mm")
         if not math.isfinite(value):
             raise GeometryError(f"{self.name}: {parameter} = {value!r} is not a finite number")
         for broken, side, bound in ((value < minimum, "below", minimum), (value > maximum, "above", maximum)):
@@ -132,10 +134,20 @@ class Part(ABC):
             moments.append(volume_moments(solid.points, solid.triangles))
         return mass_properties(extrapolate(*moments), self.density)
 
-    def write_stl(self, path: str | os.PathLike[str], chord_mm: float = 0.01) -> None:
-        """Binary STL in mm; chords stay within `chord_mm` of the true surface."""
-        values = " ".join(f"{name}={value:g}" for name, value in self.parameters.items())
-        write_stl(self.solid(Resolution(segments=4096, chord_mm=chord_mm)), path, f"{self.name} {values}")
+    @property
+    def title(self) -> str:
+        """Name and parameter values in one line."""
+        return " ".join([self.name, *(f"{name}={value:g}" for name, value in self.parameters.items())])
+
+    def write_stl(self, path: str | os.PathLike[str], resolution: Resolution = EXPORT_RESOLUTION) -> None:
+        """Binary STL in mm; by default chords stay within 0.01 mm of the true surface."""
+        write_stl(self.solid(resolution), path, self.title)
+
+    def write_step(self, path: str | os.PathLike[str], schema: str = "AP242") -> None:
+        """Exact solid with named faces as STEP in mm, application protocol "AP214" or "AP242"."""
+        from codesign.geometry.step import write_step  # OpenCASCADE is loaded only when asked for
+
+        write_step(self, path, schema)
 
 
 @dataclass(frozen=True)

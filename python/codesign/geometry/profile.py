@@ -47,6 +47,24 @@ class Edge:
     centre: tuple[float, float] | None = None
     sweep: float = 0.0
 
+    def middle(self, start: tuple[float, float]) -> tuple[float, float]:
+        """The point half way along the edge, which leaves from `start`."""
+        if self.centre is None:
+            return (0.5 * (start[0] + self.end[0]), 0.5 * (start[1] + self.end[1]))
+        cx, cy = self.centre
+        angle = math.atan2(start[1] - cy, start[0] - cx) + 0.5 * self.sweep
+        radius = math.hypot(start[0] - cx, start[1] - cy)
+        return (cx + radius * math.cos(angle), cy + radius * math.sin(angle))
+
+    def directions(self, start: tuple[float, float]) -> tuple[float, float]:
+        """Angles [rad] of the direction of travel at both ends of the edge, which leaves from `start`."""
+        if self.centre is None:
+            angle = math.atan2(self.end[1] - start[1], self.end[0] - start[0])
+            return angle, angle
+        quarter = math.copysign(0.5 * math.pi, self.sweep)
+        angle = math.atan2(start[1] - self.centre[1], start[0] - self.centre[0]) + quarter
+        return angle, angle + self.sweep
+
 
 @dataclass(frozen=True, slots=True)
 class Loop:
@@ -54,6 +72,22 @@ class Loop:
 
     start: tuple[float, float]
     edges: tuple[Edge, ...]
+
+    @property
+    def starts(self) -> list[tuple[float, float]]:
+        """The point from which each edge leaves."""
+        return [self.start, *(edge.end for edge in self.edges[:-1])]
+
+    @property
+    def turns_once(self) -> bool:
+        """Whether the direction of travel makes one full left turn without doubling back, as on a simple outline."""
+        directions = [edge.directions(start) for start, edge in zip(self.starts, self.edges, strict=True)]
+        turns = [edge.sweep for edge in self.edges]
+        for (_, before), (after, _) in zip(directions, directions[1:] + directions[:1], strict=True):
+            turns.append((after - before + math.pi) % FULL_TURN - math.pi)
+            if abs(turns[-1]) > math.pi - 1e-6:
+                return False
+        return abs(sum(turns) - FULL_TURN) < 1e-6
 
     @property
     def area(self) -> float:
@@ -113,7 +147,8 @@ class Loop:
 class Profile:
     """A plane region: one outer loop and the holes in it. Lengths in mm, loops counter-clockwise.
 
-    Raises: GeometryError for a loop without area or a clockwise one (it would be a solid turned inside out).
+    Raises: GeometryError for a loop without area, a clockwise one (it would be a solid turned inside out), or one that
+        does not turn exactly once or doubles back (an arc drawn the wrong way round, a crossing).
     """
 
     outer: Loop
@@ -123,6 +158,10 @@ class Profile:
         for loop in self.loops:
             if not loop.area > 0.0:
                 raise GeometryError(f"profile starting at {loop.start}: area {loop.area:g} mm² must be positive")
+            if not loop.turns_once:
+                raise GeometryError(
+                    f"profile starting at {loop.start} crosses itself or doubles back: does an arc turn the wrong way?"
+                )
 
     @property
     def loops(self) -> tuple[Loop, ...]:

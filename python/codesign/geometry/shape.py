@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from codesign.errors import GeometryError
 from codesign.geometry.profile import Path, Profile, Vector, circle, polygon
 
 Triple = tuple[float, float, float]
@@ -95,7 +96,7 @@ class Shape:
 
     def mirrored(self, axis: str) -> Shape:
         """The mirror image in the plane through the origin normal to "x", "y" or "z"."""
-        return Moved.by(self, np.diag([*(1.0 - 2.0 * np.array(_AXES[axis])), 1.0]))
+        return Moved.by(self, reflection(axis))
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +112,7 @@ class Extrusion(Shape):
 
     def __post_init__(self) -> None:
         if not self.end > self.start:
-            raise ValueError(f"extrusion from {self.start!r} to {self.end!r} mm: the end must lie above the start")
+            raise GeometryError(f"extrusion from {self.start!r} to {self.end!r} mm: the end must lie above the start")
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +126,7 @@ class Revolution(Shape):
         if self.profile.holes:
             raise ValueError("a revolved profile has no holes")
         if min(self.profile.outer.start[1], *(edge.end[1] for edge in self.profile.outer.edges)) < 0.0:
-            raise ValueError("a revolved profile must not cross its axis")
+            raise GeometryError("a revolved profile must not cross its axis")
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,6 +165,13 @@ class Moved(Shape):
         if not np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-9:
             raise ValueError("only rotations, reflections and translations keep circles round")
         return Moved(shape, tuple(tuple(row) for row in matrix.tolist()))
+
+
+def reflection(axis: str) -> Vector:
+    """(4, 4) mirror in the plane through the origin normal to "x", "y" or "z"."""
+    if axis not in _AXES:
+        raise ValueError(f"axis = {axis!r}: must be 'x', 'y' or 'z'")
+    return np.diag([*(1.0 - 2.0 * np.array(_AXES[axis])), 1.0])
 
 
 def union(*shapes: Shape) -> Shape:

@@ -21,6 +21,9 @@ LOWER_CREASE = 25.0  # x of the crease on the lower faces
 SEAT_RADIUS, SEAT_DEPTH = 23.0, 1.0
 SEAT_HOLES = polar(19.7, 10.0, -10.0, 110.0, -110.0, 130.0, -130.0)
 SCREWS = [(4.0, 10.0), (4.0, -10.0)]
+COUNTERBORE_RADIUS, COUNTERBORE_DEPTH = 3.0, 3.4  # of the seat's holes, from the upper face
+SCREW_RADIUS = 4.2
+MINIMUM_WALL = 2.0
 FAR = 400.0  # beyond the part, for tools that cut through
 
 
@@ -32,7 +35,7 @@ class JetpackBracket(Part):
     """
 
     angle: float = parameter("deg", minimum=0.5, maximum=89.5)
-    distance: float = parameter("mm", minimum=26.0, maximum=400.0)
+    distance: float = parameter("mm", minimum=0.0, maximum=400.0)
     _: KW_ONLY
     name: str = "jetpack_bracket"
     density: float = 2800.0  # aluminium 7075, as in the published masses
@@ -58,6 +61,17 @@ class JetpackBracket(Part):
         """Origin in the seat's centre on the slab's lower face, x along the slab, z from there into the slab."""
         crease = Frame((self._upper_crease_x, 0.0, BASE), self._along, (0.0, 1.0, 0.0))
         return crease.at(self.distance, 0.0, -self.thickness)
+
+    def check(self) -> None:
+        """Walls between the creases and the features beside them."""
+        screw_edge = SCREWS[0][0] + SCREW_RADIUS
+        steepest = 2.0 * math.degrees(math.atan((LOWER_CREASE - screw_edge - MINIMUM_WALL) / BASE))
+        wall = f"{MINIMUM_WALL:g} mm wall"
+        self.limit("angle", maximum=steepest, because=f"{wall} between screw holes and upper crease")
+        lower_to_upper = BASE * math.tan(math.radians(self.angle) / 2.0)
+        nearest = max(SEAT_RADIUS - lower_to_upper, COUNTERBORE_RADIUS - SEAT_HOLES[-1][0]) + MINIMUM_WALL
+        self.limit("distance", minimum=nearest, because=f"{wall} between seat and creases")
+        self.limit("thickness", minimum=SEAT_DEPTH + COUNTERBORE_DEPTH + MINIMUM_WALL, because=f"{wall} under the seat")
 
     def through_holes(self) -> int:
         """Six holes of the seat and two screws; the dowel hole is blind."""
@@ -92,7 +106,7 @@ class JetpackBracket(Part):
             for tool in self._seat_tools():
                 shape = shape - tool
         if screws:
-            screw = stepped_hole((7.0, -1.0, 9.0), (4.2, 9.0, BASE + 1.0), shoulder_face="screw_seat")
+            screw = stepped_hole((7.0, -1.0, 9.0), (SCREW_RADIUS, 9.0, BASE + 1.0), shoulder_face="screw_seat")
             shape = shape - at_points(screw, SCREWS)
         if dowel:
             shape = shape - cylinder(2.0, BASE - 7.5, BASE + 1.0).moved(-10.0)
@@ -127,7 +141,8 @@ class JetpackBracket(Part):
     def _seat_tools(self) -> list[Shape]:
         """Pocket in the lower face and six counterbored holes around its centre."""
         top = self.thickness
-        hole = stepped_hole((1.6, 0.0, top - 3.4), (3.0, top - 3.4, top + 1.0))
+        shoulder = top - COUNTERBORE_DEPTH
+        hole = stepped_hole((1.6, 0.0, shoulder), (COUNTERBORE_RADIUS, shoulder, top + 1.0))
         pocket = cylinder(SEAT_RADIUS, -1.0, SEAT_DEPTH, end_face="seat")
         return [tool.placed(self._seat_frame) for tool in (pocket, at_points(hole, SEAT_HOLES))]
 

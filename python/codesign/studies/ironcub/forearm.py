@@ -49,8 +49,8 @@ class ForearmJetSupport(Part):
     corners of the published part (`as_published`).
     """
 
-    offset: float = parameter("mm", minimum=50.0, maximum=140.0)
-    length: float = parameter("mm", minimum=12.0, maximum=500.0)
+    offset: float = parameter("mm", minimum=0.0, maximum=200.0)
+    length: float = parameter("mm", minimum=0.0, maximum=500.0)
     _: KW_ONLY
     name: str = "forearm_support"
     density: float = 4410.0  # titanium alloy, as in the published masses
@@ -69,6 +69,10 @@ class ForearmJetSupport(Part):
         neck = (HUB_RADIUS + BLEND_RADIUS, RING_RADIUS + BLEND_RADIUS, BLEND_RADIUS + MINIMUM_WALL)
         largest = math.sqrt(neck[0] ** 2 - neck[2] ** 2) + math.sqrt(neck[1] ** 2 - neck[2] ** 2)
         self.limit("offset", maximum=largest, because=f"{2 * MINIMUM_WALL:g} mm wall between hub and ring")
+        relief = ROD_X - RELIEF_X
+        self.limit("fillet", 0.0, FLANGE_HALF_WIDTH - ROD_RADIUS - 0.2, because="it must end on the flange")
+        self.limit("relief_fillet", 0.0, 0.5 * relief, because="the relief has two of them")
+        self.limit("length", minimum=relief + self.fillet + MINIMUM_WALL, because="relief and fillet beside each other")
 
     @property
     def _clamp_x(self) -> float:
