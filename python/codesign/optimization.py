@@ -74,7 +74,7 @@ def optimize(
     Raises: StoreError (folder holds a run, is being written, disk full), ExecutionError (workers do not start),
         ValueError (wrong settings), KeyboardInterrupt (Ctrl-C: nothing stored is lost, `resume` continues).
     """
-    study = _loaded(study)
+    study = load_problem(study)
     optimizer = study.optimizer
     size = optimizer.population if population is None else population
     count = optimizer.generations if generations is None else generations
@@ -97,18 +97,17 @@ def optimize(
 
 def sweep(study: StudyLike, counts: Sequence[int], *, out: str | Path, **resources: Unpack[Resources]) -> Run:
     """Evaluates every design of a sub-grid with `counts[i]` evenly spread values of variable i."""
-    study = _loaded(study)
-    settings = Settings(algorithm="listed", listed=tuple(sub_grid(study.space, counts)), evaluations=None)
-    return run_search(study, settings, out, **resources)
+    study = load_problem(study)
+    return run_search(study, Settings.listing(sub_grid(study.space, counts)), out, **resources)
 
 
 def evaluate_designs(
     study: StudyLike, designs: Sequence[Mapping[str, float]], *, out: str | Path, **resources: Unpack[Resources]
 ) -> Run:
     """Evaluates the given designs, each once, kept and resumable like any run."""
-    study = _loaded(study)
-    grids = tuple(dict.fromkeys(study.space.indices(design) for design in designs))
-    return run_search(study, Settings(algorithm="listed", listed=grids, evaluations=None), out, **resources)
+    study = load_problem(study)
+    grids = [study.space.indices(design) for design in designs]
+    return run_search(study, Settings.listing(grids), out, **resources)
 
 
 def run_search(study: Problem, settings: Settings, out: str | Path, **resources: Unpack[Resources]) -> Run:
@@ -120,7 +119,7 @@ def run_search(study: Problem, settings: Settings, out: str | Path, **resources:
         "study": {"name": study.name, "source": ref.source, "loader": ref.loader, "hash": ref.hash},
         "variables": [asdict(variable) for variable in study.space.variables],
         "objectives": list(study.objectives),
-        "settings": asdict(settings),
+        "settings": settings.document(),
         "cache": None if cache is None else str(cache),
     }
     with RunStore.create(out, meta) as store:
@@ -150,9 +149,14 @@ def resume(
         settings = Settings.from_document(store.meta["settings"])
         if evaluations is not None:
             settings = replace(settings, evaluations=evaluations)
-            store.set_meta("settings", asdict(settings))
+            store.set_meta("settings", settings.document())
         _drive(study, settings, store, resources.get("cache", store.meta["cache"]), resources)
     return load_run(out)
+
+
+def load_problem(study: StudyLike) -> Problem:
+    """The study itself, or loaded from its name or path."""
+    return load(DEFAULT_LOADER, str(study)) if isinstance(study, str | Path) else study
 
 
 def stored_study(store: RunStore, study: Problem | None = None) -> Problem:
@@ -198,7 +202,3 @@ def _drive(study: Problem, settings: Settings, store: RunStore, cache: Path | st
     finally:
         if designs is not None:
             designs.close()
-
-
-def _loaded(study: StudyLike) -> Problem:
-    return load(DEFAULT_LOADER, str(study)) if isinstance(study, str | Path) else study

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from codesign.design import DesignSpace
@@ -52,8 +53,18 @@ class Settings:
                 raise ValueError(f"{name} = {getattr(self, name)}: must be in 0 … 1")
 
     @classmethod
+    def listing(cls, grids: Sequence[Grid]) -> Settings:
+        """Of a run that evaluates the given grid points, each once."""
+        return cls(algorithm="listed", listed=tuple(dict.fromkeys(grids)), evaluations=None)
+
+    def document(self) -> dict[str, Any]:
+        """As stored: JSON values only."""
+        document: dict[str, Any] = json.loads(json.dumps(asdict(self)))
+        return document
+
+    @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> Settings:
-        """Inverse of `dataclasses.asdict` after JSON."""
+        """Inverse of `document`."""
         lists = {name: tuple(tuple(grid) for grid in document[name]) for name in ("first", "listed")}
         return cls(**(dict(document) | lists))
 

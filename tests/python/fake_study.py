@@ -1,7 +1,8 @@
 """A cheap study with the interface of codesign.study.Study, for tests of everything around an evaluation.
 
 `source` is a JSON object: seconds (time of an evaluation), jitter (random time on top), faults (grid point "0,1,2" ->
-what it does to its process), levels, log (a file that gets a line per evaluation), hash, execution.
+what it does to its process), levels, log (a file that gets a line per evaluation), hash, execution, unconstrained (all
+designs are feasible), by_trajectory (the trajectory's name decides, too).
 """
 
 from __future__ import annotations
@@ -50,6 +51,8 @@ class FakeStudy:
         self.seconds = options.get("seconds", 0.0)
         self.jitter = options.get("jitter", 0.0)
         self.faults = options.get("faults", {})
+        self.by_trajectory = options.get("by_trajectory", False)
+        self.unconstrained = options.get("unconstrained", False)
         self.log = options.get("log")
         levels = options.get("levels", [21, 11, 6])
         self.space = DesignSpace(
@@ -66,18 +69,20 @@ class FakeStudy:
         time.sleep(self.seconds + self.jitter * random.random())
         misbehave(self.faults.get(",".join(map(str, self.space.indices(design)))))
         near = sum((v - 0.1) ** 2 for v in x) / 3.0
+        if self.by_trajectory:
+            near += len(trajectory or "") + int((trajectory or "0")[-1])
         far = sum((v - 0.9) ** 2 for v in x) / 3.0
         margin = 1.6 - x[0] - x[1]
         if self.faults.get(",".join(map(str, self.space.indices(design)))) == "nan":
             near = float("nan")
         part = {"mass": x[0] / 3.0, "seconds": {"mesh": time.perf_counter()}}
-        infeasible = margin < 0
+        infeasible = margin < 0 and not self.unconstrained
         return Evaluation(
             design=self.space.design(design).to_dict(),
             status="infeasible" if infeasible else "feasible",
             objectives={} if infeasible else {"near": near, "far": far},
             constraints={"margin": margin},
-            violations={"margin": max(0.0, -margin)},
+            violations={"margin": max(0.0, -margin) if infeasible else 0.0},
             parts={"part": part},
             flight={"trajectory": trajectory},
             seconds={"total": time.perf_counter()},
