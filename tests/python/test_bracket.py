@@ -11,7 +11,7 @@ POCKET_FLOOR_MM2 = np.pi * 23.0**2 - 6.0 * np.pi * 1.6**2
 
 
 def face_area(surface: SurfaceMesh, name: str) -> float:
-    triangles = surface.triangles[surface.face_indices == list(surface.face_names).index(name)]
+    triangles = surface.triangles[surface.face == list(surface.face_names).index(name)]
     a, b, c = (surface.points[triangles[:, k]] for k in range(3))
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
 

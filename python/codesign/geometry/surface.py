@@ -15,11 +15,11 @@ from codesign.units import MILLIMETRE
 
 @dataclass(frozen=True)
 class SurfaceMesh:
-    """Closed, outward-oriented triangles: points (n, 3) m; triangles (m, 3); face_indices (m,) into face_names."""
+    """Closed, outward-oriented triangles: points (n, 3) m; triangles (m, 3); face (m,) into face_names."""
 
     points: Vector
     triangles: Indices
-    face_indices: Indices
+    face: Indices
     face_names: Sequence[str]
 
 
