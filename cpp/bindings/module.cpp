@@ -34,6 +34,7 @@ PYBIND11_MODULE(_core, m) {
   py::module_ dynamics = m.def_submodule("dynamics", "Rigid-body dynamics, box QP and flight.");
   codesign::bind_dynamics(dynamics);
   codesign::bind_flight(dynamics);
+  codesign::bind_convex(dynamics);
   py::module_ fem = m.def_submodule("fem", "Surfaces, tetrahedra and linear elasticity.");
   codesign::bind_mesh(fem);
   codesign::bind_static(fem);

@@ -13,7 +13,7 @@ import msgspec
 
 from codesign.errors import StudyError, UrdfError
 from codesign.inertial import Inertial, MassProperties
-from codesign.transforms import Axis, Matrix, mirrored_pose, pose, require_pose
+from codesign.transforms import Axis, Matrix, mirrored_pose, pose, reflection, require_pose
 from codesign.units import DEGREE, MILLIMETRE
 from codesign.urdf import RobotDescription
 
@@ -100,6 +100,13 @@ def place_interface(place: PartPlacement, part_T_interface: Matrix) -> Matrix:
     """link_T_interface (4, 4) of a placed part; the interface's y axis is turned round in a mirror image."""
     local = part_T_interface if place.mirror is None else mirrored_pose(part_T_interface, place.mirror)
     return place.link_T_part.matrix() @ local
+
+
+def place_points(place: PartPlacement, points: Matrix) -> Matrix:
+    """Points (n, 3) of a placed part in link axes [m]."""
+    T = place.link_T_part.matrix()
+    local = points if place.mirror is None else points @ reflection(place.mirror)
+    return local @ T[:3, :3].T + T[:3, 3]
 
 
 def _placed(robot: RobotDescription, place: PartPlacement, name: str, part: PartBody) -> RobotDescription:

@@ -1,0 +1,90 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bindings/bindings.hpp"
+#include "dynamics/convex_distance.hpp"
+
+namespace py = pybind11;
+
+namespace codesign {
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Hull = Eigen::Map<const Eigen::Matrix3Xd>;  // the transpose of a C-contiguous (n, 3) array
+using RowMajor4d = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
+Hull hull(const Array& points, std::size_t number) {
+  if (points.ndim() != 2 || points.shape(0) < 1 || points.shape(1) != 3) {
+    throw std::invalid_argument("hull " + std::to_string(number) +
+                                " must have shape (n, 3), n > 0");
+  }
+  const Hull map(points.data(), 3, points.shape(0));
+  if (!map.allFinite()) {
+    throw std::invalid_argument("hull " + std::to_string(number) + " must be finite");
+  }
+  return map;
+}
+
+void check_pairs(const Indices& first, const Indices& second, const Array& poses,
+                 std::size_t hulls) {
+  const py::ssize_t count = first.size();
+  if (first.ndim() != 1 || second.ndim() != 1 || second.size() != count) {
+    throw std::invalid_argument("first and second must have the same shape (m,)");
+  }
+  if (poses.ndim() != 3 || poses.shape(0) != count || poses.shape(1) != 4 || poses.shape(2) != 4) {
+    throw std::invalid_argument("first_T_second must have shape (m, 4, 4)");
+  }
+  const auto limit = static_cast<std::int64_t>(hulls);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    for (const std::int64_t number : {first.at(i), second.at(i)}) {
+      if (number < 0 || number >= limit) {
+        throw std::invalid_argument("pair " + std::to_string(i) + ": there is no hull " +
+                                    std::to_string(number));
+      }
+    }
+  }
+  if (!Eigen::Map<const Eigen::VectorXd>(poses.data(), poses.size()).allFinite()) {
+    throw std::invalid_argument("first_T_second must be finite");
+  }
+}
+
+Array hull_distances(const std::vector<Array>& hulls, const Indices& first, const Indices& second,
+                     const Array& first_T_second) {
+  std::vector<Hull> maps;
+  for (std::size_t k = 0; k < hulls.size(); ++k) maps.push_back(hull(hulls[k], k));
+  check_pairs(first, second, first_T_second, hulls.size());
+  Array result(first.size());
+  double* const out = result.mutable_data();
+  {
+    py::gil_scoped_release release;
+    for (py::ssize_t i = 0; i < first.size(); ++i) {
+      const Eigen::Map<const RowMajor4d> T(first_T_second.data() + 16 * i);
+      const dynamics::Pose pose{T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()};
+      out[i] = dynamics::signed_distance(maps[first.data()[i]], maps[second.data()[i]], pose);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void bind_convex(py::module_& m) {
+  m.def("hull_distances", &hull_distances, py::arg("hulls"), py::arg("first"), py::arg("second"),
+        py::arg("first_T_second"),
+        R"(Signed distances of pairs of convex hulls.
+
+Args:
+    hulls: points (n, 3) of each hull in its own frame [m]; points inside a hull do no harm.
+    first, second: (m,) numbers of the hulls of each pair.
+    first_T_second: (m, 4, 4) pose of the second hull's frame in the first's.
+Returns: (m,) [m]; where two hulls overlap, minus the length of the shortest translation that parts them.
+Raises: ValueError for wrong shapes, numbers or values that are not finite.
+Source: Gilbert, Johnson, Keerthi (1988); van den Bergen (2001).)");
+}
+
+}  // namespace codesign

@@ -1,0 +1,239 @@
+#include "dynamics/convex_distance.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace codesign::dynamics {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kMaxIterations = 128;
+constexpr double kRelativeTolerance = 1e-12;  // of squared distances
+constexpr double kSameFacet = 1e-9;           // of the size of D: lower bumps belong to the facet
+constexpr double kContact = 1e-10;            // [m]: nearer than this counts as overlapping
+
+// The Minkowski difference, known by its farthest point in a direction.
+struct Difference {
+  const HullPoints& first;
+  const HullPoints& second;
+  const Pose& first_T_second;
+
+  Vector3d support(const Vector3d& direction) const {
+    const Vector3d opposite = -(first_T_second.R.transpose() * direction);
+    Eigen::Index i = 0, j = 0;
+    (direction.transpose() * first).maxCoeff(&i);
+    (opposite.transpose() * second).maxCoeff(&j);
+    return first.col(i) - first_T_second.R * second.col(j) - first_T_second.p;
+  }
+};
+
+struct Simplex {
+  std::array<Vector3d, 4> vertices;
+  int count = 0;
+  Vector3d nearest = Vector3d::Zero();  // its point nearest to the origin
+};
+
+// Takes the face spanned by the newest vertex and k others if its nearest point lies inside it and
+// beats `best`.
+template <int k>
+void try_face(const Vector3d& newest, const std::array<Vector3d, k>& others, Simplex& best) {
+  Eigen::Matrix<double, 3, k> edges;
+  for (int i = 0; i < k; ++i) edges.col(i) = others[i] - newest;
+  const Eigen::Matrix<double, k, k> gram = edges.transpose() * edges;
+  if (!(gram.determinant() > 1e-14 * gram.diagonal().prod())) return;  // degenerate face
+  const Eigen::Matrix<double, k, 1> weights = gram.inverse() * -(edges.transpose() * newest);
+  if (weights.minCoeff() < 0.0 || weights.sum() > 1.0) return;
+  const Vector3d point = newest + edges * weights;
+  if (point.squaredNorm() >= best.nearest.squaredNorm()) return;
+  best.nearest = point;
+  best.count = k + 1;
+  for (int i = 0; i < k; ++i) best.vertices[i] = others[i];
+  best.vertices[k] = newest;
+}
+
+// Adds a vertex and keeps only the face nearest to the origin; it holds the new vertex.
+Simplex with_vertex(const Simplex& old, const Vector3d& newest) {
+  Simplex best;
+  best.vertices[0] = newest;
+  best.count = 1;
+  best.nearest = newest;
+  const auto& v = old.vertices;
+  for (int i = 0; i < old.count; ++i) try_face<1>(newest, {v[i]}, best);
+  for (int i = 0; i < old.count; ++i) {
+    for (int j = i + 1; j < old.count; ++j) try_face<2>(newest, {v[i], v[j]}, best);
+  }
+  if (old.count == 3) try_face<3>(newest, {v[0], v[1], v[2]}, best);
+  return best;
+}
+
+// Distance of the difference from the origin; at most kContact if it holds the origin.
+double distance_to_origin(const Difference& difference) {
+  Simplex simplex = with_vertex({}, difference.support(Vector3d::UnitX()));
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    const double squared = simplex.nearest.squaredNorm();
+    if (squared <= kContact * kContact) break;
+    const Vector3d vertex = difference.support(-simplex.nearest);
+    if (squared - simplex.nearest.dot(vertex) <= kRelativeTolerance * squared) break;
+    const Simplex next = with_vertex(simplex, vertex);
+    if (next.nearest.squaredNorm() >= squared) break;  // round-off: nothing left to gain
+    simplex = next;
+    if (simplex.count == 4) return 0.0;  // the origin lies inside a tetrahedron
+  }
+  return simplex.nearest.norm();
+}
+
+using Edge = std::pair<int, int>;  // of vertex numbers, as its facet runs through it
+
+struct Facet {
+  std::array<int, 3> corners;  // counter-clockwise seen from outside
+  Vector3d normal;
+  double offset;  // of its plane along the normal; infinite for a facet without area
+};
+
+// A convex polytope that grows towards the difference.
+struct Polytope {
+  std::vector<Vector3d> vertices;
+  std::vector<Facet> facets;
+
+  void add_facet(int a, int b, int c) {
+    const Vector3d cross = (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
+    const double area = cross.norm();
+    const double longest = std::max((vertices[b] - vertices[a]).squaredNorm(),
+                                    (vertices[c] - vertices[a]).squaredNorm());
+    if (area <= kSameFacet * longest) {
+      facets.push_back({{a, b, c}, Vector3d::Zero(), std::numeric_limits<double>::infinity()});
+      return;
+    }
+    const Vector3d normal = cross / area;
+    facets.push_back({{a, b, c}, normal, normal.dot(vertices[a])});
+  }
+
+  // Replaces the facets that see the new vertex by a fan from it to the edge of what it sees,
+  // found by walking from one such facet to its neighbours: round-off cannot tear the surface.
+  // False, and nothing done, if that edge is not one closed loop.
+  bool add_vertex(const Vector3d& vertex, std::size_t seen_facet, double tolerance) {
+    std::vector<bool> seen(facets.size(), false);
+    std::vector<std::size_t> pending = {seen_facet};
+    std::vector<Edge> rim;
+    seen[seen_facet] = true;
+    while (!pending.empty()) {
+      const Facet facet = facets[pending.back()];
+      pending.pop_back();
+      for (int i = 0; i < 3; ++i) {
+        const Edge edge(facet.corners[i], facet.corners[(i + 1) % 3]);
+        const std::size_t other = facet_with(Edge(edge.second, edge.first));
+        if (seen[other]) continue;
+        if (facets[other].normal.dot(vertex) - facets[other].offset > tolerance) {
+          seen[other] = true;
+          pending.push_back(other);
+        }
+      }
+    }
+    for (std::size_t k = 0; k < facets.size(); ++k) {
+      for (int i = 0; seen[k] && i < 3; ++i) {
+        const Edge edge(facets[k].corners[i], facets[k].corners[(i + 1) % 3]);
+        if (!seen[facet_with(Edge(edge.second, edge.first))]) rim.push_back(edge);
+      }
+    }
+    if (!is_loop(rim)) return false;
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < facets.size(); ++k) {
+      if (!seen[k]) facets[kept++] = facets[k];
+    }
+    facets.resize(kept);
+    vertices.push_back(vertex);
+    const int newest = static_cast<int>(vertices.size()) - 1;
+    for (const auto& [from, to] : rim) add_facet(from, to, newest);
+    return true;
+  }
+
+  std::size_t facet_with(const Edge& edge) const {
+    const auto found = std::find_if(facets.begin(), facets.end(), [&](const Facet& facet) {
+      const auto& c = facet.corners;
+      return edge == Edge(c[0], c[1]) || edge == Edge(c[1], c[2]) || edge == Edge(c[2], c[0]);
+    });
+    return static_cast<std::size_t>(found - facets.begin());  // closed surface: always found
+  }
+
+  static bool is_loop(const std::vector<Edge>& edges) {
+    int at = edges.front().second;
+    for (std::size_t step = 1; step < edges.size(); ++step) {
+      const auto next = std::find_if(edges.begin() + 1, edges.end(),
+                                     [&](const Edge& edge) { return edge.first == at; });
+      if (next == edges.end()) return false;
+      at = next->second;
+    }
+    return at == edges.front().first;
+  }
+};
+
+// A tetrahedron of points of the difference, as large as a few directions give; empty if flat.
+Polytope first_tetrahedron(const Difference& difference) {
+  std::vector<Vector3d> points;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        if (x != 0 || y != 0 || z != 0) points.push_back(difference.support(Vector3d(x, y, z)));
+      }
+    }
+  }
+  const auto farthest = [&](const auto& measure) {
+    return *std::max_element(points.begin(), points.end(),
+                             [&](const auto& p, const auto& q) { return measure(p) < measure(q); });
+  };
+  const Vector3d a = points.front();
+  const Vector3d b = farthest([&](const Vector3d& p) { return (p - a).norm(); });
+  const Vector3d c = farthest([&](const Vector3d& p) { return (p - a).cross(b - a).norm(); });
+  const Vector3d normal = (b - a).cross(c - a);
+  const Vector3d d = farthest([&](const Vector3d& p) { return std::abs((p - a).dot(normal)); });
+  const double volume = (d - a).dot(normal);
+  const double size = (b - a).norm();
+  Polytope polytope;
+  if (std::abs(volume) <= kRelativeTolerance * size * size * size) return polytope;
+  polytope.vertices = {a, b, c, d};
+  if (volume > 0.0) std::swap(polytope.vertices[1], polytope.vertices[2]);  // d below a, b, c
+  polytope.add_facet(0, 1, 2);
+  polytope.add_facet(0, 2, 3);
+  polytope.add_facet(2, 1, 3);
+  polytope.add_facet(1, 0, 3);
+  return polytope;
+}
+
+// Distance of the origin, inside the difference, from its surface; 0 if it is not inside. The
+// nearest facet of the polytope bounds it from below, every supporting plane from above.
+double depth_of_origin(const Difference& difference) {
+  Polytope polytope = first_tetrahedron(difference);
+  if (polytope.facets.empty()) return 0.0;
+  const double tolerance = kSameFacet * (polytope.vertices[0] - polytope.vertices[3]).norm();
+  double depth = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < 4 * kMaxIterations; ++iteration) {
+    const auto nearest =
+        std::min_element(polytope.facets.begin(), polytope.facets.end(),
+                         [](const Facet& f, const Facet& g) { return f.offset < g.offset; });
+    const double lower = nearest->offset;
+    const Vector3d vertex = difference.support(nearest->normal);
+    const double upper = nearest->normal.dot(vertex);
+    depth = std::min(depth, upper);
+    if (depth - lower <= tolerance) break;
+    const auto number = static_cast<std::size_t>(nearest - polytope.facets.begin());
+    if (!polytope.add_vertex(vertex, number, tolerance)) break;
+  }
+  return std::max(depth, 0.0);
+}
+
+}  // namespace
+
+double signed_distance(const HullPoints& first, const HullPoints& second,
+                       const Pose& first_T_second) {
+  const Difference difference{first, second, first_T_second};
+  const double distance = distance_to_origin(difference);
+  return distance > kContact ? distance : -depth_of_origin(difference);
+}
+
+}  // namespace codesign::dynamics

@@ -1,0 +1,315 @@
+"""Clearance between bodies of a robot over the postures it takes, and between jet plumes and the robot.
+
+Every link is the set of convex hulls of its shapes; a part can be given as convex pieces of its own surface. Watched
+bodies (the parts, turbines) are measured against every other link they can meet; a plume is a truncated cone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import manifold3d
+import msgspec
+import numpy as np
+import yourdfpy
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+from scipy.stats import qmc
+
+from codesign.dynamics import hull_distances
+from codesign.errors import MeshError, StudyError, UrdfError
+from codesign.transforms import Matrix, inverse
+from codesign.units import DEGREE, MILLIMETRE
+from codesign.urdf import RobotDescription
+
+Indices = NDArray[np.intp]
+Pieces = Mapping[str, Sequence[Matrix]]  # link -> points (n, 3) of each convex piece, link axes [m]
+CYLINDER_SIDES = 32  # inscribed: up to 0.5 % of the radius inside the true cylinder or sphere
+
+
+class PlumeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Jet plume along +z of each jet frame: a truncated cone from the nozzle.
+
+    half_angle_deg: 11.8° is the visible edge of a free turbulent round jet (Cushman-Roisin, "Environmental Fluid
+    Mechanics", turbulent jets). start_mm: gap between frame origin and cone, which so does not touch the nozzle.
+    """
+
+    jets: tuple[str, ...] = ()
+    half_angle_deg: float = 11.8
+    radius_mm: float = 34.0
+    start_mm: float = 5.0
+    length_mm: float = 1000.0
+
+
+class InterferenceSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What is measured.
+
+    bodies: watched links. ignore: pairs of links that touch by design. report_below_mm: pairs that stay farther apart
+    in all postures are left out of the report.
+    """
+
+    bodies: tuple[str, ...]
+    ignore: tuple[tuple[str, str], ...] = ()
+    plumes: PlumeSettings = PlumeSettings()
+    report_below_mm: float = 50.0
+
+
+@dataclass(frozen=True, slots=True)
+class Clearance:
+    """Smallest distance [m] of two links, or of a plume (named after its jet) and a link.
+
+    Where they overlap, minus the shortest translation that parts them. posture: where it occurs, index. angle: plumes
+    only, smallest angle between the jet axis and the link, seen from the nozzle, in that posture [rad].
+    """
+
+    first: str
+    second: str
+    distance: float
+    posture: int
+    angle: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class InterferenceReport:
+    """Pairs and plumes below the reporting distance, nearest first.
+
+    min_clearance, min_plume_clearance [m]: the smallest of each; the reporting distance if all are farther.
+    """
+
+    clearances: tuple[Clearance, ...]
+    plumes: tuple[Clearance, ...]
+    min_clearance: float
+    min_plume_clearance: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers and names for JSON."""
+        return dict(msgspec.to_builtins(self))
+
+
+def range_postures(ranges: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Matrix]:
+    """Postures spread over joint ranges [rad]: the middle, both ends of every joint alone, and `count` Sobol points."""
+    names = list(ranges)
+    lower, upper = np.array([ranges[name] for name in names], dtype=float).T
+    middle = 0.5 * (lower + upper)
+    ends = np.tile(middle, (2 * len(names), 1))
+    ends[np.arange(len(names)), np.arange(len(names))] = lower
+    ends[len(names) + np.arange(len(names)), np.arange(len(names))] = upper
+    sobol = qmc.Sobol(len(names), seed=seed).random_base2(max(0, int(np.ceil(np.log2(max(count, 1))))))[:count]
+    samples = np.vstack([middle, ends, lower + sobol * (upper - lower)])
+    return {name: samples[:, k] for k, name in enumerate(names)}
+
+
+def history_postures(names: Sequence[str], history: Matrix, count: int) -> dict[str, Matrix]:
+    """Postures from a flown history (n, joints) [rad]: where each joint is at its ends, and `count` evenly in time."""
+    chosen = np.concatenate(
+        [history.argmin(axis=0), history.argmax(axis=0), np.linspace(0, len(history) - 1, count).round().astype(int)]
+    )
+    samples = history[np.unique(chosen)]
+    return {name: samples[:, k] for k, name in enumerate(names)}
+
+
+def hull_vertices(points: Matrix) -> Matrix:
+    """Vertices (m, 3) of the convex hull of a solid's points (n, 3)."""
+    return np.ascontiguousarray(points[ConvexHull(points).vertices], dtype=float)
+
+
+def convex_pieces(points: Matrix, triangles: NDArray[np.integer[Any]], count: int) -> list[Matrix]:
+    """Vertices of `count` convex pieces that cover a solid: hulls of slices across its longest extent.
+
+    points (n, 3), triangles (m, 3): closed surface. Raises: MeshError if it is not closed.
+    """
+    vertices, corners = np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.uint64)
+    body = manifold3d.Manifold(manifold3d.Mesh64(vert_properties=vertices, tri_verts=corners))
+    if body.status() != manifold3d.Error.NoError or body.is_empty():
+        raise MeshError(f"no convex pieces: the surface is not closed ({body.status().name})")
+    axis = int(np.argmax(np.ptp(points, axis=0)))
+    normal = np.eye(3)[axis]
+    low, high = points[:, axis].min(), points[:, axis].max()
+    pieces = []
+    for cut in np.linspace(high, low, count + 1)[1:-1]:
+        above, body = body.split_by_plane(normal, float(cut))
+        pieces.append(above)
+    return [hull_vertices(p.to_mesh64().vert_properties[:, :3]) for p in (*pieces, body) if not p.is_empty()]
+
+
+def link_pieces(robot: RobotDescription, given: Pieces) -> dict[str, list[Matrix]]:
+    """Convex pieces of every link that has a shape, link axes: those given, else one hull of the link's primitives.
+
+    Raises: UrdfError for a link whose shape is a mesh and for which no pieces are given.
+    """
+    pieces = {}
+    for name in robot.link_names:
+        if name in given:
+            pieces[name] = [np.asarray(points, dtype=float) for points in given[name]]
+        elif visuals := robot.link(name).visuals:
+            pieces[name] = [np.vstack([_visual_points(name, visual) for visual in visuals])]
+    return pieces
+
+
+def check_interference(
+    robot: RobotDescription,
+    settings: InterferenceSettings,
+    postures: Mapping[str, Matrix],
+    pieces: Pieces | None = None,
+) -> InterferenceReport:
+    """Clearances of the watched bodies and of the plumes over postures.
+
+    postures: joint name -> (n,) positions [rad]; joints not named stay at zero. pieces: convex pieces of links in link
+    axes, instead of the hull of the link's visuals.
+    Raises: StudyError if a watched or ignored link or a jet is not there; UrdfError as `link_pieces` does.
+    """
+    shapes = link_pieces(robot, pieces or {})
+    _require_links(robot, shapes, settings)
+    count = len(next(iter(postures.values()))) if postures else 1
+    poses = _posture_poses(robot, postures, count)
+    limit = settings.report_below_mm * MILLIMETRE
+    contacts = _clearances(shapes, poses, _body_pairs(robot, shapes, settings), limit)
+    plume_shapes = shapes | {jet + PLUME: [_plume_hull(settings.plumes)] for jet in settings.plumes.jets}
+    plume_poses = poses | {jet + PLUME: poses[jet] for jet in settings.plumes.jets}
+    plume_pairs = [(jet + PLUME, link) for jet in settings.plumes.jets for link in shapes if link != jet]
+    plumes = [
+        _with_angle(found, plume_shapes, plume_poses)
+        for found in _clearances(plume_shapes, plume_poses, plume_pairs, limit)
+    ]
+    nearest = (min((c.distance for c in found), default=limit) for found in (contacts, plumes))
+    return InterferenceReport(tuple(contacts), tuple(plumes), *nearest)
+
+
+PLUME = " plume"
+RIGID = 1e-12  # m and rotation entries: pairs whose relative pose changes by less do not move
+
+
+def _require_links(robot: RobotDescription, shapes: Mapping[str, object], settings: InterferenceSettings) -> None:
+    for name in (*settings.bodies, *(link for pair in settings.ignore for link in pair)):
+        if name not in shapes:
+            raise StudyError(f"interference: the robot has no link {name!r} with a shape")
+    for jet in settings.plumes.jets:
+        if jet not in robot.link_names:
+            raise StudyError(f"interference: the robot has no jet frame {jet!r}")
+
+
+def _body_pairs(
+    robot: RobotDescription, shapes: Mapping[str, object], settings: InterferenceSettings
+) -> list[tuple[str, str]]:
+    ignored = {frozenset(pair) for pair in settings.ignore}
+    ignored |= {frozenset((robot.joint(j).parent, robot.joint(j).child)) for j in robot.joint_names}
+    pairs = {frozenset((body, link)) for body in settings.bodies for link in shapes if link != body} - ignored
+    order = list(shapes)
+    numbers = sorted(sorted(order.index(name) for name in pair) for pair in pairs)
+    return [(order[i], order[j]) for i, j in numbers]
+
+
+def _posture_poses(robot: RobotDescription, postures: Mapping[str, Matrix], count: int) -> dict[str, Matrix]:
+    """root_T_link (count, 4, 4) of every link."""
+    poses = robot.frame_poses(postures)
+    return {name: np.broadcast_to(pose, (count, 4, 4)) for name, pose in poses.items()}
+
+
+def _clearances(
+    shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix], pairs: Sequence[tuple[str, str]], limit: float
+) -> list[Clearance]:
+    """Smallest signed distance of each pair over all postures, where it is below `limit`; nearest first."""
+    hulls, rows = _piece_rows(shapes, pairs)
+    if not len(rows):
+        return []
+    relative = np.array([inverse(poses[a]) @ poses[b] for a, b in pairs])  # (pairs, postures, 4, 4)
+    bound = _sphere_bounds(hulls, rows, relative)
+    rigid = np.ptp(relative, axis=1).max(axis=(1, 2)) < RIGID  # one posture tells all
+    bound[rigid[rows[:, 0]], 1:] = np.inf
+    row, posture = np.nonzero(bound < limit)
+    pair = rows[row, 0]
+    distance = hull_distances(hulls, rows[row, 1], rows[row, 2], relative[pair, posture])
+    nearest = np.lexsort((distance, pair))
+    first_of_pair = nearest[np.unique(pair[nearest], return_index=True)[1]]
+    found = [
+        Clearance(pairs[pair[k]][0], pairs[pair[k]][1], float(distance[k]), int(posture[k])) for k in first_of_pair
+    ]
+    return sorted((c for c in found if c.distance < limit), key=lambda clearance: clearance.distance)
+
+
+def _piece_rows(
+    shapes: Mapping[str, Sequence[Matrix]], pairs: Sequence[tuple[str, str]]
+) -> tuple[list[Matrix], Indices]:
+    """All pieces in one list, and rows (pair, first piece, second piece) of every combination of pieces of a pair."""
+    hulls: list[Matrix] = []
+    numbers: dict[str, list[int]] = {}
+    for name, pieces in shapes.items():
+        numbers[name] = list(range(len(hulls), len(hulls) + len(pieces)))
+        hulls.extend(pieces)
+    rows = [(k, i, j) for k, (a, b) in enumerate(pairs) for i in numbers[a] for j in numbers[b]]
+    return hulls, np.array(rows, dtype=np.intp).reshape(-1, 3)
+
+
+def _sphere_bounds(hulls: Sequence[Matrix], rows: Indices, relative: Matrix) -> Matrix:
+    """Lower bound (rows, postures) of the distance, from a sphere around each piece."""
+    centers = np.array([0.5 * (hull.min(axis=0) + hull.max(axis=0)) for hull in hulls])
+    radii = np.array([np.linalg.norm(hull - c, axis=1).max() for hull, c in zip(hulls, centers, strict=True)])
+    T = relative[rows[:, 0]]
+    apart = np.einsum("rpij,rj->rpi", T[..., :3, :3], centers[rows[:, 2]]) + T[..., :3, 3] - centers[rows[:, 1], None]
+    return np.asarray(np.linalg.norm(apart, axis=2) - (radii[rows[:, 1]] + radii[rows[:, 2]])[:, None])
+
+
+def _with_angle(found: Clearance, shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix]) -> Clearance:
+    """The clearance of a plume with its jet's name and the smallest angle to the link."""
+    jet_T_link = inverse(poses[found.first][found.posture]) @ poses[found.second][found.posture]
+    pieces = [piece @ jet_T_link[:3, :3].T + jet_T_link[:3, 3] for piece in shapes[found.second]]
+    angle = min(axis_angle(piece) for piece in pieces)
+    return Clearance(found.first.removesuffix(PLUME), found.second, found.distance, found.posture, angle)
+
+
+def axis_angle(points: Matrix) -> float:
+    """Smallest angle [rad] between the z axis and the hull of a solid's points (n, 3), seen from the origin.
+
+    Zero where the axis meets the hull; else on an edge p + t (q − p), where its cosine is stationary.
+    """
+    hull = ConvexHull(points)
+    facing = hull.equations[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossings = np.where(facing != 0.0, -hull.equations[:, 3] / facing, np.nan)
+    enters = np.max(crossings[facing < 0.0], initial=0.0)
+    leaves = np.min(crossings[facing > 0.0], initial=np.inf)
+    if enters <= leaves and np.all(hull.equations[facing == 0.0, 3] <= 0.0):
+        return 0.0
+    edges = np.vstack([hull.simplices[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))])
+    p, d = points[edges[:, 0]], points[edges[:, 1]] - points[edges[:, 0]]
+    pp, pd, dd = (np.einsum("ij,ij->i", a, b) for a, b in ((p, p), (p, d), (d, d)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (d[:, 2] * pp - p[:, 2] * pd) / (p[:, 2] * dd - d[:, 2] * pd)
+    nearest = p + np.clip(np.nan_to_num(t), 0.0, 1.0)[:, None] * d
+    candidates = np.vstack([points[hull.vertices], nearest])
+    return float(np.arctan2(np.hypot(candidates[:, 0], candidates[:, 1]), candidates[:, 2]).min())
+
+
+def _plume_hull(settings: PlumeSettings) -> Matrix:
+    start, length = settings.start_mm * MILLIMETRE, settings.length_mm * MILLIMETRE
+    radius = settings.radius_mm * MILLIMETRE
+    wide = radius + (length - start) * np.tan(settings.half_angle_deg * DEGREE)
+    return np.vstack([_ring(radius, start), _ring(wide, length)])
+
+
+def _ring(radius: float, z: float) -> Matrix:
+    angles = np.arange(CYLINDER_SIDES) * 2.0 * np.pi / CYLINDER_SIDES
+    return np.column_stack([radius * np.cos(angles), radius * np.sin(angles), np.full(CYLINDER_SIDES, z)])
+
+
+def _sphere_points() -> Matrix:
+    heights = np.sin(np.linspace(-np.pi / 2, np.pi / 2, CYLINDER_SIDES // 2 + 1))
+    return np.vstack([_ring(np.sqrt(1.0 - z * z), z) for z in heights])
+
+
+def _visual_points(link: str, visual: yourdfpy.Visual) -> Matrix:
+    shape = visual.geometry
+    if shape.box is not None:
+        points = np.array(list(product((-0.5, 0.5), repeat=3))) * shape.box.size
+    elif shape.cylinder is not None:
+        half = 0.5 * shape.cylinder.length
+        points = np.vstack([_ring(shape.cylinder.radius, z) for z in (-half, half)])
+    elif shape.sphere is not None:
+        points = shape.sphere.radius * _sphere_points()
+    else:
+        raise UrdfError(f"link {link}: its shape is a mesh; give its convex pieces")
+    origin = np.eye(4) if visual.origin is None else visual.origin
+    return np.asarray(points @ origin[:3, :3].T + origin[:3, 3])
