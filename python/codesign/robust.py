@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from codesign.cache import MemoryCache, PartCache
-from codesign.design import DesignSpace
+from codesign.derived import DerivedStudy, load_changes
 from codesign.evaluation import Evaluation
-from codesign.execute import StudyRef
-from codesign.problem import ExecutionDefaults, OptimizerDefaults, Problem
-from codesign.worker import load
+from codesign.problem import Problem
 
 Statistic = Literal["mean", "worst", "both"]
 STATISTICS = ("mean", "worst", "both")
 
 
 @dataclass(frozen=True)
-class RobustStudy:
-    """A study flown on several trajectories; to the optimiser a study like any other.
+class RobustStudy(DerivedStudy):
+    """A study flown on several trajectories.
 
     A design is feasible if it is on all trajectories; a violation is the worst of them. Objectives: the mean or the
-    worst of the trajectories' values under their own names, or both as `name_mean` and `name_worst`.
+    worst of the trajectories' values under their own names, or both as `name_mean` and `name_worst`. The time limit of
+    an evaluation is for all trajectories together.
     """
 
-    study: Problem
     trajectories: tuple[str, ...]
     statistic: Statistic = "worst"
     loader: str = "codesign.robust:load_robust"
@@ -40,27 +36,9 @@ class RobustStudy:
             raise ValueError(f"statistic = {self.statistic!r}: one of {', '.join(STATISTICS)}")
 
     @property
-    def name(self) -> str:
-        """The study's name with a suffix."""
-        return f"{self.study.name}-robust"
-
-    @property
-    def source(self) -> str:
-        """All that `load_robust` needs, as JSON."""
-        ref = StudyRef.of(self.study)
-        document = {"source": ref.source, "loader": ref.loader, "trajectories": self.trajectories}
-        return json.dumps(document | {"statistic": self.statistic})
-
-    @property
-    def hash(self) -> str:
-        """Of the study and of what is made of it."""
-        decides = json.dumps([self.study.hash, self.trajectories, self.statistic])
-        return hashlib.sha256(decides.encode()).hexdigest()[:16]
-
-    @property
-    def space(self) -> DesignSpace:
-        """As the study's."""
-        return self.study.space
+    def changes(self) -> dict[str, Any]:
+        """Trajectories and statistic."""
+        return {"trajectories": self.trajectories, "statistic": self.statistic}
 
     @property
     def objectives(self) -> tuple[str, ...]:
@@ -68,16 +46,6 @@ class RobustStudy:
         if self.statistic != "both":
             return self.study.objectives
         return tuple(f"{name}_{statistic}" for name in self.study.objectives for statistic in ("mean", "worst"))
-
-    @property
-    def optimizer(self) -> OptimizerDefaults:
-        """As the study's."""
-        return self.study.optimizer
-
-    @property
-    def execution(self) -> ExecutionDefaults:
-        """As the study's; its time limit is for all trajectories together."""
-        return self.study.execution
 
     def evaluate(
         self, design: Mapping[str, float], /, trajectory: str | None = None, cache: PartCache | None = None
@@ -91,9 +59,8 @@ class RobustStudy:
 
 def load_robust(source: str) -> RobustStudy:
     """Inverse of `RobustStudy.source`."""
-    document = json.loads(source)
-    study = load(document["loader"], document["source"])
-    return RobustStudy(study, tuple(document["trajectories"]), document["statistic"])
+    study, changes = load_changes(source)
+    return RobustStudy(study, tuple(changes["trajectories"]), changes["statistic"])
 
 
 def robust(

@@ -72,6 +72,32 @@ def test_killed_run_resumes_to_the_same_rows(tmp_path, steady: bool) -> None:
     assert resumed.finished
 
 
+@pytest.mark.slow
+def test_twenty_random_kills(tmp_path) -> None:
+    """Killed anywhere: while starting, making the file, storing, breeding."""
+    settings = {"generations": 30}
+    fake = study(seconds=0.1)
+    whole = optimize(study(seconds=0.0, hash=fake.hash), out=tmp_path / "whole", cache=None, workers=2, **settings)
+    rng = random.Random(7)
+    out = tmp_path / "killed"
+    done = []
+    for _ in range(20):
+        process = start(fake, out, **settings)
+        if rng.random() < 0.7:
+            wait_for_rows(out, finished_rows(out) + 1, process)
+        time.sleep(rng.uniform(0.0, 0.8))
+        process.kill()
+        assert process.wait() == -signal.SIGKILL
+        done.append(finished_rows(out))
+    assert done == sorted(done)
+    assert 0 < done[-1] < 240
+    resumed = resume(out)
+    assert rows(out) == [record.identity() for record in whole.search_records]
+    assert resumed.generations == whole.generations
+    with RunStore.read(out) as store:
+        assert store._execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
 def test_workers_die_with_a_killed_parent(tmp_path) -> None:
     fake = study(seconds=0.0, faults={"0,0,0": "native loop"}, log=str(tmp_path / "log"))
     process = start(fake, tmp_path / "run", generations=1, first=[{"a": 0.0, "b": 0.0, "c": 0.0}])

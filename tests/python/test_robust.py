@@ -1,11 +1,13 @@
-"""Robust studies: mean and worst over tasks, violations of the worst, parts analysed once."""
+"""Studies made from a study. Robust: mean and worst over tasks, violations of the worst, parts analysed once."""
 
 import json
 
 import pytest
 
+from codesign.derived import coarse, load_coarse
+from codesign.errors import DesignError
 from codesign.evaluation import Evaluation
-from codesign.optimization import optimize
+from codesign.optimization import optimize, sweep
 from codesign.robust import aggregate, load_robust, robust
 from fake_study import FakeStudy, study
 
@@ -89,3 +91,18 @@ def test_wrong_settings_are_refused() -> None:
         robust(study(), [])
     with pytest.raises(ValueError, match="statistic"):
         robust(study(), ["hover"], statistic="median")
+
+
+def test_coarse_study_is_the_study_on_part_of_its_grid(tmp_path) -> None:
+    fake = study(levels=[21, 11, 6])
+    part = coarse(fake, (5, 3, 2))
+    assert part.space.levels == (5, 3, 2)
+    assert load_coarse(part.source).hash == part.hash != fake.hash
+    run = sweep(part, (5, 3, 2), out=tmp_path / "run", cache=None)
+    assert len(run.evaluations) == 30
+    for result in run.evaluations:
+        assert result.objectives == fake.evaluate(result.design).objectives
+    with pytest.raises(
+        DesignError, match=r"a: 4 evenly spaced values are not possible, but \[2, 3, 5, 6, 11, 21\] are"
+    ):
+        coarse(fake, (4, 3, 2))
