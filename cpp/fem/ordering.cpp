@@ -130,6 +130,16 @@ std::vector<int> node_keys(const TetMesh& mesh, const std::vector<int>& rank) {
   return key;
 }
 
+std::vector<int> free_components(const Constraints& constraints, const std::vector<int>& nodes) {
+  std::vector<int> count;
+  count.reserve(nodes.size());
+  for (const int node : nodes) {
+    const std::size_t d = 3 * at(node);
+    count.push_back(!constraints.fixed[d] + !constraints.fixed[d + 1] + !constraints.fixed[d + 2]);
+  }
+  return count;
+}
+
 void number_equations(const Constraints& constraints, NodePattern& pattern) {
   pattern.equation.assign(constraints.fixed.size(), -1);
   pattern.dof_start.assign(1, 0);
@@ -169,60 +179,6 @@ void find_neighbors(const TetMesh& mesh, const Incidence& elements, NodePattern&
   }
 }
 
-// Elimination tree of the pattern (Liu's algorithm with path compression).
-std::vector<int> elimination_tree(const NodePattern& pattern) {
-  const int n = pattern.positions();
-  std::vector<int> upper_start(at(n) + 1, 0), upper(pattern.neighbor.size());
-  for (const int j : pattern.neighbor) ++upper_start[at(j) + 1];
-  std::partial_sum(upper_start.begin(), upper_start.end(), upper_start.begin());
-  std::vector<int> next(upper_start.begin(), upper_start.end() - 1);
-  for (int k = 0; k < n; ++k) {
-    for (int p = pattern.start[at(k)]; p < pattern.start[at(k) + 1]; ++p) {
-      upper[at(next[at(pattern.neighbor[at(p)])]++)] = k;
-    }
-  }
-  std::vector<int> parent(at(n), -1), ancestor(at(n), -1);
-  for (int k = 0; k < n; ++k) {
-    for (int p = upper_start[at(k)]; p < upper_start[at(k) + 1]; ++p) {
-      int i = upper[at(p)];
-      while (i != -1 && i < k) {
-        const int above = ancestor[at(i)];
-        ancestor[at(i)] = k;
-        if (above == -1) parent[at(i)] = k;
-        i = above;
-      }
-    }
-  }
-  return parent;
-}
-
-// Children before parents, every subtree contiguous.
-std::vector<int> postorder(const std::vector<int>& parent) {
-  const int n = static_cast<int>(parent.size());
-  std::vector<int> child(at(n), -1), sibling(at(n), -1), stack, result;
-  for (int k = n - 1; k >= 0; --k) {
-    if (parent[at(k)] < 0) continue;
-    sibling[at(k)] = child[at(parent[at(k)])];
-    child[at(parent[at(k)])] = k;
-  }
-  result.reserve(at(n));
-  for (int root = 0; root < n; ++root) {
-    if (parent[at(root)] >= 0) continue;
-    stack.push_back(root);
-    while (!stack.empty()) {
-      const int k = stack.back();
-      if (child[at(k)] >= 0) {
-        stack.push_back(child[at(k)]);
-        child[at(k)] = sibling[at(stack.back())];
-      } else {
-        result.push_back(k);
-        stack.pop_back();
-      }
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
@@ -238,13 +194,15 @@ NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
   set_positions(key.size(), pattern);
   find_neighbors(mesh, elements, pattern);
 
-  const std::vector<int> sequence = postorder(elimination_tree(pattern));
+  Elimination elimination =
+      analyze(pattern.start, pattern.neighbor, free_components(constraints, pattern.order));
   std::vector<int> order;
-  for (const int k : sequence) order.push_back(pattern.order[at(k)]);
-  pattern.order = order;
+  order.reserve(pattern.order.size());
+  for (const int k : elimination.order) order.push_back(pattern.order[at(k)]);
+  pattern.order = std::move(order);
+  pattern.supernodes = std::move(elimination.supernodes);
   set_positions(key.size(), pattern);
   find_neighbors(mesh, elements, pattern);
-  pattern.parent = elimination_tree(pattern);
   number_equations(constraints, pattern);
   return pattern;
 }

@@ -1,6 +1,8 @@
 #include "fem/stiffness.hpp"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "errors.hpp"
 
@@ -10,71 +12,128 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// Position of each block of the pattern inside its dof columns, and the columns themselves.
-struct BlockOffsets {
-  std::vector<int> row_offset;  // (blocks) first row of the block, counted after the diagonal block
-};
-
-BlockOffsets fill_pattern(const NodePattern& pattern, LowerMatrix& a) {
-  BlockOffsets offsets;
-  offsets.row_offset.resize(pattern.neighbor.size());
+// Fills the structure of a; returns for each neighbour of the pattern the first row of its block in
+// the columns of the position, counted after the diagonal block.
+std::vector<int> fill_structure(const NodePattern& pattern, LowerMatrix& a) {
   const int n = pattern.equations();
-  a.start.reserve(at(n) + 1);
-  a.start.push_back(0);
-  std::vector<int> below;
+  const auto width = [&](int k) { return pattern.dof_start[at(k) + 1] - pattern.dof_start[at(k)]; };
+  std::vector<int> offset(pattern.neighbor.size());
+  a.start.assign(at(n) + 1, 0);
   for (int k = 0; k < pattern.positions(); ++k) {
-    below.clear();
+    int below = 0;
     for (int p = pattern.start[at(k)]; p < pattern.start[at(k) + 1]; ++p) {
-      offsets.row_offset[at(p)] = static_cast<int>(below.size());
-      const int i = pattern.neighbor[at(p)];
-      for (int d = pattern.dof_start[at(i)]; d < pattern.dof_start[at(i) + 1]; ++d) {
-        below.push_back(d);
-      }
+      offset[at(p)] = below;
+      below += width(pattern.neighbor[at(p)]);
     }
     const int first = pattern.dof_start[at(k)], last = pattern.dof_start[at(k) + 1];
-    for (int column = first; column < last; ++column) {
-      for (int d = column; d < last; ++d) a.row.push_back(d);
-      a.row.insert(a.row.end(), below.begin(), below.end());
-      a.start.push_back(static_cast<int>(a.row.size()));
+    for (int d = first; d < last; ++d) a.start[at(d) + 1] = a.start[at(d)] + last - d + below;
+  }
+  a.row.resize(at(a.start.back()));
+  a.value.assign(at(a.start.back()), 0.0);
+  for (int k = 0; k < pattern.positions(); ++k) {
+    for (int d = pattern.dof_start[at(k)]; d < pattern.dof_start[at(k) + 1]; ++d) {
+      int* row = &a.row[at(a.start[at(d)])];
+      for (int r = d; r < pattern.dof_start[at(k) + 1]; ++r) *row++ = r;
+      for (int p = pattern.start[at(k)]; p < pattern.start[at(k) + 1]; ++p) {
+        const int i = pattern.neighbor[at(p)];
+        for (int r = pattern.dof_start[at(i)]; r < pattern.dof_start[at(i) + 1]; ++r) *row++ = r;
+      }
     }
   }
-  a.value.assign(a.row.size(), 0.0);
-  return offsets;
+  return offset;
 }
 
-// Adds the element block (row node, column node) at its place; local components of held equations
-// are skipped.
-void scatter(const NodePattern& pattern, const BlockOffsets& offsets, const int* tet,
-             const ElementMatrix& k, LowerMatrix& a) {
-  for (int j = 0; j < kTetNodes; ++j) {
-    const int column_position = pattern.position[at(tet[j])];
-    if (column_position < 0) continue;
-    const int* column_equation = &pattern.equation[3 * at(tet[j])];
-    const int first = pattern.dof_start[at(column_position)];
-    const int width = pattern.dof_start[at(column_position) + 1] - first;
-    const auto begin = pattern.neighbor.begin() + pattern.start[at(column_position)];
-    const auto end = pattern.neighbor.begin() + pattern.start[at(column_position) + 1];
+// Elements by their first eliminated node: neighbours in this sequence write to the same columns.
+std::vector<int> elements_by_column(const TetMesh& mesh, const NodePattern& pattern) {
+  const std::size_t count = at(static_cast<int>(mesh.tets.rows()));
+  std::vector<int> first(count), start(at(pattern.positions()) + 2, 0), sequence(count);
+  for (std::size_t e = 0; e < count; ++e) {
+    first[e] = pattern.positions();
     for (int i = 0; i < kTetNodes; ++i) {
-      const int row_position = pattern.position[at(tet[i])];
-      if (row_position < column_position) continue;
-      const bool diagonal = row_position == column_position;
-      const int* row_equation = &pattern.equation[3 * at(tet[i])];
-      const int row_first = pattern.dof_start[at(row_position)];
-      const int offset =
-          diagonal ? 0
-                   : offsets.row_offset[at(static_cast<int>(
-                         std::lower_bound(begin, end, row_position) - pattern.neighbor.begin()))];
-      for (int b = 0; b < 3; ++b) {
-        const int column = column_equation[b];
-        if (column < 0) continue;
-        const int local_column = column - first;
-        const int base = a.start[at(column)] + (diagonal ? -local_column : width - local_column);
-        for (int c = 0; c < 3; ++c) {
-          const int row = row_equation[c];
-          if (row < 0 || row < column) continue;
-          a.value[at(base + offset + row - row_first)] += k(3 * i + c, 3 * j + b);
-        }
-      }
+      const int k = pattern.position[at(mesh.tets(static_cast<int>(e), i))];
+      if (k >= 0) first[e] = std::min(first[e], k);
+    }
+    ++start[at(first[e]) + 1];
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  for (std::size_t e = 0; e < count; ++e) sequence[at(start[at(first[e])]++)] = static_cast<int>(e);
+  return sequence;
+}
+
+// A node of an element as the assembly sees it.
+struct LocalNode {
+  int position;  // -1 if all its components are held
+  int local;     // 0 ... 9
+  int first;     // first equation
+  int width;     // number of equations
+  const int* equation;
+};
+
+using LocalNodes = std::array<LocalNode, kTetNodes>;
+
+LocalNodes sorted_nodes(const NodePattern& pattern, const int* tet) {
+  LocalNodes nodes;
+  for (int i = 0; i < kTetNodes; ++i) {
+    LocalNode node{pattern.position[at(tet[i])], i, 0, 0, &pattern.equation[3 * at(tet[i])]};
+    if (node.position >= 0) {
+      node.first = pattern.dof_start[at(node.position)];
+      node.width = pattern.dof_start[at(node.position) + 1] - node.first;
+    }
+    int j = i;
+    for (; j > 0 && nodes[at(j - 1)].position > node.position; --j) nodes[at(j)] = nodes[at(j - 1)];
+    nodes[at(j)] = node;
+  }
+  return nodes;
+}
+
+// Adds a block to the columns of one node; base: where the block's first row stands in the node's
+// first column. Column c of the node is shorter at its top by c entries.
+void add_block(const ElementMatrix& k, const LocalNode& row, const LocalNode& column,
+               const std::vector<int>& start, int offset, double* value) {
+  const double* block = k.data() + 30 * 3 * column.local + 3 * row.local;
+  if (row.width == 3 && column.width == 3) {
+    for (int b = 0; b < 3; ++b, block += 30) {
+      double* v = value + start[at(column.first + b)] + 3 - b + offset;
+      v[0] += block[0];
+      v[1] += block[1];
+      v[2] += block[2];
+    }
+    return;
+  }
+  for (int b = 0; b < 3; ++b, block += 30) {
+    const int d = column.equation[b];
+    if (d < 0) continue;
+    double* v = value + start[at(d)] + column.width - (d - column.first) + offset;
+    for (int c = 0; c < 3; ++c) {
+      if (row.equation[c] >= 0) v[row.equation[c] - row.first] += block[c];
+    }
+  }
+}
+
+void add_diagonal_block(const ElementMatrix& k, const LocalNode& node,
+                        const std::vector<int>& start, double* value) {
+  for (int b = 0; b < 3; ++b) {
+    const int column = node.equation[b];
+    if (column < 0) continue;
+    for (int c = 0; c < 3; ++c) {
+      const int row = node.equation[c];
+      if (row < column) continue;
+      value[start[at(column)] + row - column] += k(3 * node.local + c, 3 * node.local + b);
+    }
+  }
+}
+
+void scatter(const NodePattern& pattern, const std::vector<int>& offset, const int* tet,
+             const ElementMatrix& k, LowerMatrix& a) {
+  const LocalNodes nodes = sorted_nodes(pattern, tet);
+  for (int j = 0; j < kTetNodes; ++j) {
+    const LocalNode& column = nodes[at(j)];
+    if (column.position < 0) continue;
+    add_diagonal_block(k, column, a.start, a.value.data());
+    int p = pattern.start[at(column.position)];
+    for (int i = j + 1; i < kTetNodes; ++i) {
+      while (pattern.neighbor[at(p)] != nodes[at(i)].position) ++p;
+      add_block(k, nodes[at(i)], column, a.start, offset[at(p)], a.value.data());
     }
   }
 }
@@ -119,16 +178,16 @@ Eigen::VectorXd multiply(const LowerMatrix& a, const Eigen::VectorXd& x) {
 LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
                                const NodePattern& pattern) {
   LowerMatrix a;
-  const BlockOffsets offsets = fill_pattern(pattern, a);
+  const std::vector<int> offset = fill_structure(pattern, a);
   const double lambda = lame_lambda(material), mu = shear_modulus(material);
   ElementMatrix k;
-  for (int e = 0; e < mesh.tets.rows(); ++e) {
+  for (const int e : elements_by_column(mesh, pattern)) {
     try {
       element_stiffness(tet_nodes(mesh, e), lambda, mu, k);
     } catch (const MeshError& error) {
       throw MeshError("element " + std::to_string(e) + ": " + error.what());
     }
-    scatter(pattern, offsets, mesh.tets.row(e).data(), k, a);
+    scatter(pattern, offset, mesh.tets.row(e).data(), k, a);
   }
   return a;
 }
