@@ -361,7 +361,10 @@ def engine_hash() -> str:
     from codesign import _core
 
     files = [Path(str(_core.__file__)), *sorted((PACKAGE / "geometry").glob("*.py"))]
-    files += [PACKAGE / f"{n}.py" for n in ("analysis", "flight_setup", "inertial", "pipeline", "robot", "transforms", "units", "urdf")]
+    files += [
+        PACKAGE / f"{n}.py"
+        for n in ("analysis", "flight_setup", "inertial", "pipeline", "robot", "transforms", "units", "urdf")
+    ]
     digest = hashlib.sha256()
     for file in files:
         digest.update(file.name.encode() + file.read_bytes())
