@@ -1,6 +1,6 @@
 """Clearance between bodies of a robot over the postures it takes, and between jet plumes and the robot.
 
-Every link is the set of convex hulls of its shapes; a part can be given as convex pieces of its own surface. Watched
+Every link is the set of its primitive shapes; a part is given as convex pieces of its own surface. Watched
 bodies (the parts, turbines) are measured against every other link they can meet; a plume is a truncated cone.
 """
 
@@ -136,7 +136,7 @@ def convex_pieces(points: Matrix, triangles: NDArray[np.integer[Any]], count: in
 
 
 def link_pieces(robot: RobotDescription, given: Pieces) -> dict[str, list[Matrix]]:
-    """Convex pieces of every link that has a shape, link axes: those given, else one hull of the link's primitives.
+    """Convex pieces of every link that has a shape, link axes: those given, else the link's primitives.
 
     Raises: UrdfError for a link whose shape is a mesh and for which no pieces are given.
     """
@@ -145,7 +145,7 @@ def link_pieces(robot: RobotDescription, given: Pieces) -> dict[str, list[Matrix
         if name in given:
             pieces[name] = [np.asarray(points, dtype=float) for points in given[name]]
         elif visuals := robot.link(name).visuals:
-            pieces[name] = [np.vstack([_visual_points(name, visual) for visual in visuals])]
+            pieces[name] = [_visual_points(name, visual) for visual in visuals]
     return pieces
 
 
@@ -158,7 +158,7 @@ def check_interference(
     """Clearances of the watched bodies and of the plumes over postures.
 
     postures: joint name -> (n,) positions [rad]; joints not named stay at zero. pieces: convex pieces of links in link
-    axes, instead of the hull of the link's visuals.
+    axes, instead of the link's visuals.
     Raises: StudyError if a watched or ignored link or a jet is not there; UrdfError as `link_pieces` does.
     """
     shapes = link_pieces(robot, pieces or {})
@@ -212,44 +212,58 @@ def _clearances(
     shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix], pairs: Sequence[tuple[str, str]], limit: float
 ) -> list[Clearance]:
     """Smallest signed distance of each pair over all postures, where it is below `limit`; nearest first."""
-    hulls, rows = _piece_rows(shapes, pairs)
-    if not len(rows):
-        return []
-    relative = np.array([inverse(poses[a]) @ poses[b] for a, b in pairs])  # (pairs, postures, 4, 4)
-    bound = _sphere_bounds(hulls, rows, relative)
-    rigid = np.ptp(relative, axis=1).max(axis=(1, 2)) < RIGID  # one posture tells all
-    bound[rigid[rows[:, 0]], 1:] = np.inf
-    row, posture = np.nonzero(bound < limit)
-    pair = rows[row, 0]
-    distance = hull_distances(hulls, rows[row, 1], rows[row, 2], relative[pair, posture])
-    nearest = np.lexsort((distance, pair))
-    first_of_pair = nearest[np.unique(pair[nearest], return_index=True)[1]]
-    found = [
-        Clearance(pairs[pair[k]][0], pairs[pair[k]][1], float(distance[k]), int(posture[k])) for k in first_of_pair
-    ]
+    whole = {name: _sphere(np.vstack(list(pieces))) for name, pieces in shapes.items()}
+    pairs = [(a, b) for a, b in pairs if _sphere_gaps([whole[a]], [whole[b]], _relative(poses, a, b)).min() < limit]
+    spheres = {name: [_sphere(piece) for piece in pieces] for name, pieces in shapes.items()}
+    found = (_clearance(shapes, spheres, a, b, _relative(poses, a, b), limit) for a, b in pairs)
     return sorted((c for c in found if c.distance < limit), key=lambda clearance: clearance.distance)
 
 
-def _piece_rows(
-    shapes: Mapping[str, Sequence[Matrix]], pairs: Sequence[tuple[str, str]]
-) -> tuple[list[Matrix], Indices]:
-    """All pieces in one list, and rows (pair, first piece, second piece) of every combination of pieces of a pair."""
-    hulls: list[Matrix] = []
-    numbers: dict[str, list[int]] = {}
-    for name, pieces in shapes.items():
-        numbers[name] = list(range(len(hulls), len(hulls) + len(pieces)))
-        hulls.extend(pieces)
-    rows = [(k, i, j) for k, (a, b) in enumerate(pairs) for i in numbers[a] for j in numbers[b]]
-    return hulls, np.array(rows, dtype=np.intp).reshape(-1, 3)
+def _clearance(
+    shapes: Mapping[str, Sequence[Matrix]],
+    spheres: Mapping[str, Sequence[tuple[Matrix, float]]],
+    a: str,
+    b: str,
+    a_T_b: Matrix,
+    limit: float,
+) -> Clearance:
+    """Smallest signed distance of one pair of links over postures (n, 4, 4); `limit` if it is not below."""
+    hulls = [*shapes[a], *shapes[b]]
+    bound = _sphere_gaps(spheres[a], spheres[b], a_T_b)  # (pieces of a, pieces of b, postures)
+    nearest = Clearance(a, b, limit, 0)
+    likely = bound <= bound.min(axis=(0, 1), keepdims=True)  # their distances rule out most of the others
+    for chosen in (likely, ~likely):
+        i, j, posture = np.nonzero(chosen & (bound < nearest.distance))
+        if len(i):
+            distances = hull_distances(hulls, i, j + len(shapes[a]), a_T_b[posture])
+            k = int(np.argmin(distances))
+            if distances[k] < nearest.distance:
+                nearest = Clearance(a, b, float(distances[k]), int(posture[k]))
+    return nearest
 
 
-def _sphere_bounds(hulls: Sequence[Matrix], rows: Indices, relative: Matrix) -> Matrix:
-    """Lower bound (rows, postures) of the distance, from a sphere around each piece."""
-    centers = np.array([0.5 * (hull.min(axis=0) + hull.max(axis=0)) for hull in hulls])
-    radii = np.array([np.linalg.norm(hull - c, axis=1).max() for hull, c in zip(hulls, centers, strict=True)])
-    T = relative[rows[:, 0]]
-    apart = np.einsum("rpij,rj->rpi", T[..., :3, :3], centers[rows[:, 2]]) + T[..., :3, 3] - centers[rows[:, 1], None]
-    return np.asarray(np.linalg.norm(apart, axis=2) - (radii[rows[:, 1]] + radii[rows[:, 2]])[:, None])
+def _relative(poses: Mapping[str, Matrix], a: str, b: str) -> Matrix:
+    """a_T_b in every posture, or in one (1, 4, 4) if it does not change."""
+    a_T_b = inverse(poses[a]) @ poses[b]
+    rigid = np.ptp(a_T_b, axis=0).max() < RIGID
+    return a_T_b[:1] if rigid else a_T_b
+
+
+def _sphere(points: Matrix) -> tuple[Matrix, float]:
+    """Centre (3,) and radius of a sphere around points (n, 3)."""
+    center = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    return center, float(np.linalg.norm(points - center, axis=1).max())
+
+
+def _sphere_gaps(
+    first: Sequence[tuple[Matrix, float]], second: Sequence[tuple[Matrix, float]], a_T_b: Matrix
+) -> Matrix:
+    """Distances (first, second, postures) between spheres: lower bounds of the distances of what is inside them."""
+    a, b = (np.array([center for center, _ in spheres]) for spheres in (first, second))
+    ra, rb = (np.array([radius for _, radius in spheres]) for spheres in (first, second))
+    placed = b @ np.swapaxes(a_T_b[:, :3, :3], 1, 2) + a_T_b[:, None, :3, 3]  # (postures, second, 3)
+    apart = np.linalg.norm(placed[None] - a[:, None, None], axis=3)  # (first, postures, second)
+    return np.asarray(np.swapaxes(apart, 1, 2) - (ra[:, None] + rb)[..., None])
 
 
 def _with_angle(found: Clearance, shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix]) -> Clearance:
