@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta, Struct, field
 
+from codesign.interference import InterferenceSettings
 from codesign.robot import PartPlacement
 
 Positive = Annotated[float, Meta(gt=0)]
@@ -250,10 +251,12 @@ class ObjectivesConfig(Section, kw_only=True):
 
 
 class ConstraintsConfig(Section, kw_only=True):
-    """What a design must satisfy."""
+    """What a design must satisfy. Clearances need the section [interference]; None: reported only."""
 
     safety_factor_min: Positive = 10.0
     flight_completed: bool = True
+    body_clearance_min_mm: float | None = None
+    plume_clearance_min_mm: float | None = None
 
 
 class ValidationConfig(Section, kw_only=True):
@@ -297,6 +300,7 @@ class StudyConfig(Section, kw_only=True):
     trajectories: dict[str, TrajectoryConfig]
     objectives: ObjectivesConfig = ObjectivesConfig()
     constraints: ConstraintsConfig = ConstraintsConfig()
+    interference: InterferenceSettings | None = None
     validation: ValidationConfig = ValidationConfig()
     optimizer: OptimizerConfig = OptimizerConfig()
     execution: ExecutionConfig = ExecutionConfig()
@@ -305,6 +309,7 @@ class StudyConfig(Section, kw_only=True):
 # Sections that decide the numbers of an evaluation; the rest (search, execution) does not enter the study's hash.
 DECIDING_SECTIONS = (
     "robot", "variables", "materials", "parts", "fem", "flight", "trajectories", "objectives", "constraints",
+    "interference",
 )  # fmt: skip
 
 RawStudy = dict[str, Any]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import Annotated, Any, Protocol
 
 import manifold3d
 import msgspec
@@ -21,6 +21,7 @@ from scipy.stats import qmc
 
 from codesign.dynamics import hull_distances
 from codesign.errors import MeshError, StudyError, UrdfError
+from codesign.robot import PartPlacement, place_points
 from codesign.transforms import Matrix, inverse
 from codesign.units import DEGREE, MILLIMETRE
 from codesign.urdf import RobotDescription
@@ -28,6 +29,15 @@ from codesign.urdf import RobotDescription
 Indices = NDArray[np.intp]
 Pieces = Mapping[str, Sequence[Matrix]]  # link -> points (n, 3) of each convex piece, link axes [m]
 CYLINDER_SIDES = 32  # inscribed: up to 0.5 % of the radius inside the true cylinder or sphere
+
+
+class Surface(Protocol):
+    """A closed surface: points (n, 3), triangles (m, 3)."""
+
+    @property
+    def points(self) -> Matrix: ...  # noqa: D102
+    @property
+    def triangles(self) -> NDArray[Any]: ...  # noqa: D102
 
 
 class PlumeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -48,13 +58,16 @@ class InterferenceSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=Tr
     """What is measured.
 
     bodies: watched links. ignore: pairs of links that touch by design. report_below_mm: pairs that stay farther apart
-    in all postures are left out of the report.
+    in all postures are left out of the report. postures: how many of a flight, evenly in time, beside those where a
+    joint is at its ends. slices: convex pieces of each part.
     """
 
     bodies: tuple[str, ...]
     ignore: tuple[tuple[str, str], ...] = ()
     plumes: PlumeSettings = PlumeSettings()
     report_below_mm: float = 50.0
+    postures: Annotated[int, msgspec.Meta(ge=1)] = 50
+    slices: Annotated[int, msgspec.Meta(ge=1)] = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +97,6 @@ class InterferenceReport:
     min_clearance: float
     min_plume_clearance: float
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain numbers and names for JSON."""
-        return dict(msgspec.to_builtins(self))
-
 
 def range_postures(ranges: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Matrix]:
     """Postures spread over joint ranges [rad]: the middle, both ends of every joint alone, and `count` Sobol points."""
@@ -102,13 +111,10 @@ def range_postures(ranges: Mapping[str, tuple[float, float]], count: int, seed: 
     return {name: samples[:, k] for k, name in enumerate(names)}
 
 
-def history_postures(names: Sequence[str], history: Matrix, count: int) -> dict[str, Matrix]:
-    """Postures from a flown history (n, joints) [rad]: where each joint is at its ends, and `count` evenly in time."""
-    chosen = np.concatenate(
-        [history.argmin(axis=0), history.argmax(axis=0), np.linspace(0, len(history) - 1, count).round().astype(int)]
-    )
-    samples = history[np.unique(chosen)]
-    return {name: samples[:, k] for k, name in enumerate(names)}
+def telling_samples(history: Matrix, count: int) -> Indices:
+    """Rows of a flown history (n, joints) where each joint is at its ends, and `count` evenly in time; ascending."""
+    even = np.linspace(0, len(history) - 1, count).round().astype(np.intp)
+    return np.unique(np.concatenate([history.argmin(axis=0), history.argmax(axis=0), even]))
 
 
 def hull_vertices(points: Matrix) -> Matrix:
@@ -116,7 +122,7 @@ def hull_vertices(points: Matrix) -> Matrix:
     return np.ascontiguousarray(points[ConvexHull(points).vertices], dtype=float)
 
 
-def convex_pieces(points: Matrix, triangles: NDArray[np.integer[Any]], count: int) -> list[Matrix]:
+def convex_pieces(points: Matrix, triangles: NDArray[Any], count: int) -> list[Matrix]:
     """Vertices of `count` convex pieces that cover a solid: hulls of slices across its longest extent.
 
     points (n, 3), triangles (m, 3): closed surface. Raises: MeshError if it is not closed.
@@ -176,6 +182,40 @@ def check_interference(
     ]
     nearest = (min((c.distance for c in found), default=limit) for found in (contacts, plumes))
     return InterferenceReport(tuple(contacts), tuple(plumes), *nearest)
+
+
+def flown_interference(
+    robot: RobotDescription,
+    settings: InterferenceSettings,
+    parts: Mapping[str, tuple[Sequence[PartPlacement], Surface]],
+    joints: Sequence[str],
+    history: Matrix,
+    step: float,
+) -> dict[str, Any]:
+    """Clearances of a flown design for JSON, SI units: both minima, and every pair and plume below the limit.
+
+    robot: with the design's parts in it. parts: name -> its places and its surface, part axes [m].
+    joints, history: joint names, and positions (n, joints) [rad] at times 0, step, 2 step … [s].
+    """
+    pieces: dict[str, list[Matrix]] = {}
+    for places, surface in parts.values():
+        slices = convex_pieces(surface.points, surface.triangles, settings.slices)
+        pieces |= {place.link: [place_points(place, points) for points in slices] for place in places}
+    chosen = telling_samples(history, settings.postures)
+    postures = {name: history[chosen, k] for k, name in enumerate(joints)}
+    report = check_interference(robot, settings, postures, pieces)
+    times = [float(row) * step for row in chosen]
+    return {
+        "body_clearance": report.min_clearance,
+        "plume_clearance": report.min_plume_clearance,
+        "bodies": [
+            {"links": [c.first, c.second], "clearance": c.distance, "time": times[c.posture]} for c in report.clearances
+        ],
+        "plumes": [
+            {"jet": c.first, "link": c.second, "clearance": c.distance, "angle": c.angle, "time": times[c.posture]}
+            for c in report.plumes
+        ],
+    }
 
 
 PLUME = " plume"

@@ -23,10 +23,14 @@ from codesign.fem import Material
 from codesign.flight_setup import flight_settings, joint_names
 from codesign.geometry.part import Part
 from codesign.inertial import Inertial
+from codesign.interference import flown_interference
 from codesign.provenance import provenance
 from codesign.robot import PartBody, assemble
 from codesign.units import GIGA, MEGA, MILLIMETRE
 from codesign.urdf import RobotDescription
+
+CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
+CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a safety factor of zero
 
 if TYPE_CHECKING:
     from codesign.cache import PartCache
@@ -69,19 +73,21 @@ def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartC
             cache.put(_part_key(study, part), documents[name])
     flight = result.flight
     families = objective_families(flight)
-    constraints, violations = _constraints(config, documents, flight)
+    clearances = _clearances(config, parts, robot, flight)
+    constraints, violations = _constraints(config, documents, flight, clearances)
     feasible = not any(violations.values())
     lost = not flight.completed
     return Evaluation(
         design=design.to_dict(),
         status="feasible" if feasible else "infeasible",
-        reason=None if feasible else _reason(config, documents, flight),
+        reason=None if feasible else _reason(config, documents, flight, clearances),
         objectives={} if lost else {n: families[config.objectives.family][n] for n in config.objectives.minimise},
         objective_families={} if lost else families,
         constraints=constraints,
         violations=violations,
         parts=documents,
-        flight=flight_document(trajectory or config.flight.trajectory, flight, result.seconds["flight"]),
+        flight=flight_document(trajectory or config.flight.trajectory, flight, result.seconds["flight"])
+        | ({"interference": clearances} if clearances else {}),
         seconds={"geometry": built - start, **result.seconds, "total": time.perf_counter() - start},
         provenance=provenance(study.hash),
     )
@@ -226,8 +232,34 @@ def _trajectory(config: StudyConfig, name: str | None) -> Any:
     return config.trajectories[name]
 
 
+def _clearances(
+    config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, flight: dyn.FlightLog
+) -> dict[str, Any]:
+    """Clearances over the flown postures; empty if the study does not ask for them."""
+    history = flight.joint_positions[np.isfinite(flight.joint_positions).all(axis=1)]
+    if config.interference is None or not len(history):
+        return {}
+    placed = {part.name: (part.placements, parts[part.name].surface(CLEARANCE_SEGMENTS)) for part in config.parts}
+    return flown_interference(
+        robot, config.interference, placed, joint_names(config.flight), history, config.flight.step_s
+    )
+
+
+def _short_clearances(config: StudyConfig, clearances: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """Clearances below what the study demands: name -> value and limit [m]."""
+    limits = {
+        "body_clearance": config.constraints.body_clearance_min_mm,
+        "plume_clearance": config.constraints.plume_clearance_min_mm,
+    }
+    wanted = {name: limit * MILLIMETRE for name, limit in limits.items() if limit is not None and name in clearances}
+    return {name: (clearances[name], limit) for name, limit in wanted.items() if clearances[name] < limit}
+
+
 def _constraints(
-    config: StudyConfig, parts: Mapping[str, Mapping[str, Any]], flight: dyn.FlightLog
+    config: StudyConfig,
+    parts: Mapping[str, Mapping[str, Any]],
+    flight: dyn.FlightLog,
+    clearances: Mapping[str, Any],
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Constraint values, and by how much of its limit each is violated (0: it holds)."""
     lost = not flight.completed
@@ -242,10 +274,18 @@ def _constraints(
         # The share of the flight that was missed: of two lost designs the one that flew longer is better.
         missed = 1.0 - flight.failure_time / config.flight.duration_s if lost else 0.0
         violations["qp_failures"] = max(missed, 1e-6) if lost else 0.0
+    constraints |= {name: clearances[name] for name in ("body_clearance", "plume_clearance") if name in clearances}
+    for name, (value, limit) in _short_clearances(config, clearances).items():
+        violations[name] = (limit - value) / CLEARANCE_SCALE
     return constraints, violations
 
 
-def _reason(config: StudyConfig, parts: Mapping[str, Mapping[str, Any]], flight: dyn.FlightLog) -> str:
+def _reason(
+    config: StudyConfig,
+    parts: Mapping[str, Mapping[str, Any]],
+    flight: dyn.FlightLog,
+    clearances: Mapping[str, Any],
+) -> str:
     reasons = [
         f"{name}: safety factor {part['safety_factor']:.2f} below {config.constraints.safety_factor_min:g}"
         for name, part in parts.items()
@@ -253,6 +293,8 @@ def _reason(config: StudyConfig, parts: Mapping[str, Mapping[str, Any]], flight:
     ]
     if not flight.completed:
         reasons.append(_flight_reason(flight))
+    for name, (value, limit) in _short_clearances(config, clearances).items():
+        reasons.append(f"{name.replace('_', ' ')} {value / MILLIMETRE:.1f} mm below {limit / MILLIMETRE:g} mm")
     return "; ".join(reasons)
 
 

@@ -1,6 +1,7 @@
 """Clearances of bodies and jet plumes; distances of convex hulls against independent references."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,9 +17,10 @@ from codesign.interference import (
     axis_angle,
     check_interference,
     convex_pieces,
-    history_postures,
+    flown_interference,
     hull_vertices,
     range_postures,
+    telling_samples,
 )
 from codesign.robot import PartPlacement, Pose, place_points
 from codesign.studies import ironcub
@@ -205,12 +207,37 @@ def test_postures_cover_the_ranges():
     assert (postures["a"][0], postures["b"][0]) == (0.0, 1.0)
 
 
-def test_postures_of_a_flight_hold_every_joints_extremes():
+def test_telling_samples_of_a_flight_hold_every_joints_extremes():
     history = np.sin(np.outer(np.arange(500), [0.013, 0.1, 0.7]))
-    postures = history_postures(["a", "b", "c"], history, 20)
-    for k, name in enumerate("abc"):
-        assert (postures[name].min(), postures[name].max()) == (history[:, k].min(), history[:, k].max())
-    assert len(postures["a"]) <= 26
+    chosen = telling_samples(history, 20)
+    assert len(chosen) <= 26
+    assert {0, 499} <= set(chosen)
+    np.testing.assert_array_equal(history[chosen].min(axis=0), history.min(axis=0))
+    np.testing.assert_array_equal(history[chosen].max(axis=0), history.max(axis=0))
+
+
+def test_a_flown_part_is_reported_with_the_time_of_its_nearest_approach(swing):
+    surface = SimpleNamespace(
+        points=np.array([[x, y, z] for x in (0.0, 1.0) for y in (-0.01, 0.01) for z in (-0.01, 0.01)]),
+        triangles=ConvexHull(np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])).simplices,
+    )
+    surface.triangles = outward(surface.points, surface.triangles)
+    history = np.deg2rad(np.r_[np.linspace(0, 30, 100), np.linspace(30, 0, 100)])[:, None]
+    settings = InterferenceSettings(bodies=("bar",), report_below_mm=2000, postures=5, slices=3)
+    report = flown_interference(swing, settings, {"bar": ([PartPlacement("bar")], surface)}, ["turn"], history, 0.01)
+    nearest = report["bodies"][0]
+    assert nearest["links"] == ["base", "bar"]
+    assert nearest["time"] == pytest.approx(0.99)
+    assert nearest["clearance"] == report["body_clearance"]
+    whole = check_interference(swing, settings, {"turn": np.deg2rad([30.0])})
+    assert nearest["clearance"] == pytest.approx(whole.min_clearance, abs=1e-12)
+
+
+def outward(points, triangles):
+    """Triangles of a convex solid, turned counter-clockwise seen from outside."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a - points.mean(axis=0)) < 0.0
+    return np.where(inward[:, None], triangles[:, ::-1], triangles)
 
 
 def test_unknown_links_and_meshes_without_pieces_are_refused(swing):
