@@ -2,13 +2,14 @@
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from codesign.design import DesignSpace, Variable
 from codesign.evaluation import Evaluation
 from codesign.store import Record, RunStore
+from codesign.study import load_study
 
 SPACE = DesignSpace(
     (
@@ -121,21 +122,15 @@ def evaluations(count: int, seed: int = 1, steepest: int = 79) -> list[Evaluatio
 
 
 class Study:
-    """What a report asks a study for."""
+    """The shipped study, but for evaluations, which are made up."""
 
     name, title, hash = "synthetic", "Jet interfaces of a flying robot", "5f2c9e77aa10"
     description = "Two parts carry the jets of a flying humanoid. Four numbers shape them."
     space, baseline = SPACE, SPACE.design(BASELINE)
     objectives = ("momentum", "joint_velocity", "thrust")
 
-    class config:  # noqa: N801
-        class objectives:  # noqa: N801
-            family = "rms"
-
-        class constraints:  # noqa: N801
-            safety_factor_min = 15.0
-
-        variables: ClassVar[dict[str, Any]] = {}
+    def __getattr__(self, name: str) -> Any:
+        return getattr(load_study("ironcub"), name)
 
     def evaluate(self, design: Any) -> Evaluation:
         """The made-up evaluation."""

@@ -34,7 +34,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     run = read_report_data(folder, STUDY, synthetic_run.evaluate(synthetic_run.BASELINE))
     for evaluation in run.highlights.values():
         save_detail(folder / FOLDER, detail(evaluation))
-    return write_report(folder, study=STUDY).html.as_uri()
+    return write_report(folder, study=STUDY, figures=False).html.as_uri()
 
 
 def test_the_chart_selects_on_click_rings_hovered_rows_and_changes_axes(browser, address):
@@ -107,6 +107,8 @@ def test_odd_runs_open_without_errors(browser, tmp_path, kind):
         "empty": [],
     }[kind]
     synthetic_run.write_run(tmp_path / "run", chosen)
-    with visit(browser, write_report(tmp_path / "run", study=STUDY, compute=False).html.as_uri()) as page:
+    with visit(
+        browser, write_report(tmp_path / "run", study=STUDY, compute=False, figures=False).html.as_uri()
+    ) as page:
         assert page.locator("h1").inner_text() == STUDY.title
         assert page.locator("#provenance").count() == 1

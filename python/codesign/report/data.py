@@ -15,6 +15,8 @@ from codesign.evaluation import Evaluation
 from codesign.front import non_dominated
 from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee
 
+MOST = 0.93  # of the feasible designs are in view
+
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
@@ -192,6 +194,19 @@ class ReportData:
     def hypervolume(self) -> Matrix:
         """Hypervolume (n,) of the feasible designs after each evaluation, in the box that all of them span."""
         return hypervolume_history(self.values, self.feasible)
+
+    def view(self, k: int) -> tuple[float, float] | None:
+        """Range of objective `k` that shows the front, the original and most feasible designs; outliers lie outside."""
+        shown = [float(self.values[i, k]) for i in self.front]
+        if self.baseline_vector is not None:
+            shown.append(float(self.baseline_vector[k]))
+        if self.feasible.any():
+            shown += np.quantile(self.values[self.feasible, k], [0.0, MOST]).tolist()
+        if not shown:
+            return None
+        low, high = min(shown), max(shown)
+        margin = 0.07 * (high - low) or 0.05 * abs(high) or 1.0
+        return low - margin, high + margin
 
     def gain(self, position: int) -> Matrix | None:
         """Relative change (m,) of each objective from the baseline to an entry: negative is better."""

@@ -133,6 +133,13 @@ def load_details(run_directory: Path) -> dict[str, Detail]:
     return found
 
 
+def rotation_angle(rotation: Array) -> Array:
+    """Angles (k,) [rad] of rotations (k, 3, 3); exact for small ones, robust to matrices not quite orthonormal."""
+    R = rotation
+    axis = np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1)
+    return np.asarray(np.arctan2(np.linalg.norm(axis, axis=1), np.einsum("kii->k", R) - 1.0))
+
+
 def flight_history(
     log: Any, trajectory: str, jets: tuple[str, ...], joints: tuple[str, ...], groups: dict[str, list[str]]
 ) -> FlightHistory:
@@ -141,7 +148,7 @@ def flight_history(
     kept = slice(None, None, stride)
     rotation = np.asarray(log.base_rotation)[kept].reshape(-1, 3, 3)
     reference = np.asarray(log.rotation_reference)[kept].reshape(-1, 3, 3)
-    cosine = (np.einsum("kij,kij->k", reference, rotation) - 1.0) / 2.0
+    turned = np.swapaxes(reference, 1, 2) @ rotation
     velocity = np.asarray(log.velocity)[kept, 6:] - np.asarray(log.joint_velocity_command)[kept]
     columns = [[joints.index(joint) for joint in members] for members in groups.values()]
     arrays = {
@@ -149,7 +156,7 @@ def flight_history(
         "com": np.asarray(log.com)[kept],
         "com_reference": np.asarray(log.com_reference)[kept],
         "com_error": np.linalg.norm(np.asarray(log.com)[kept] - np.asarray(log.com_reference)[kept], axis=1),
-        "attitude_error": np.arccos(np.clip(cosine, -1.0, 1.0)),
+        "attitude_error": rotation_angle(turned),
         "thrust": np.asarray(log.thrust)[kept],
         "joint_velocity_error": np.stack([np.linalg.norm(velocity[:, c], axis=1) for c in columns], axis=1),
         "base_position": np.asarray(log.base_position)[kept],

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import logging
 import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,8 @@ from codesign.errors import CodesignError, StoreError
 from codesign.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
+from codesign.report.figures import FigureData, write_figures
+from codesign.report.figures.solids import hero
 from codesign.report.page.encode import page_detail
 from codesign.report.page.html import render
 from codesign.report.reading import read_report_data, same_study, study_of
@@ -19,35 +23,42 @@ from codesign.report.reading import read_report_data, same_study, study_of
 logger = logging.getLogger(__name__)
 
 PAGE = "report.html"
+FIGURE_FOLDER = "figures"
 
 
 @dataclass(frozen=True, slots=True)
 class ReportPaths:
-    """What a report consists of."""
+    """What a report consists of: the page; the figures, each as PNG and as PDF."""
 
     html: Path
     figures: tuple[Path, ...] = ()
 
 
-def write_report(run_directory: str | Path, *, study: Any = None, compute: bool = True) -> ReportPaths:
-    """Writes `report.html` into a run's folder, with its figures beside it in `figures/`.
+def write_report(
+    run_directory: str | Path, *, study: Any = None, compute: bool = True, figures: bool = True
+) -> ReportPaths:
+    """Writes `report.html` into a run's folder, and the figures (PNG and PDF) into its folder `figures`.
 
     Args:
         run_directory: the run's folder.   study: its study, by default loaded from where the run found it.
         compute: whether to evaluate the original design and to compute stress fields and flight histories of a handful
             of designs, where the run does not have them yet; they are kept beside the run.
+        figures: whether to draw the figures.
     Raises: StoreError if there is no run, or the folder cannot be written.
     """
     directory = Path(run_directory)
     study = study if study is not None else study_of(directory)
+    current = study if same_study(directory, study) else None
     run = read_report_data(directory, study)
-    if compute and same_study(directory, study):
-        if run.baseline is None and study.baseline is not None:
-            run = replace(run, baseline=study.evaluate(study.baseline))
-        compute_details(study, run)
+    if compute and current is not None:
+        if run.baseline is None and current.baseline is not None:
+            run = replace(run, baseline=current.evaluate(current.baseline))
+        compute_details(current, run)
     details = load_details(directory)
-    text = render(run, {key: page_detail(detail) for key, detail in _shown(run, details).items()})
-    return ReportPaths(html=_write(directory / PAGE, text))
+    data = FigureData(run, details, current)
+    shown = {key: page_detail(detail) for key, detail in _shown(run, details).items()}
+    page = _write(directory / PAGE, render(run, shown, picture=_picture(data)))
+    return ReportPaths(page, write_figures(data, directory / FIGURE_FOLDER) if figures else ())
 
 
 def compute_details(study: Any, run: ReportData) -> None:
@@ -58,11 +69,30 @@ def compute_details(study: Any, run: ReportData) -> None:
         return
     from codesign.report.compute import compute_detail
 
-    for evaluation in missing:
+    def compute(evaluation: Evaluation) -> None:
         try:
             save_detail(run.directory / FOLDER, compute_detail(study, evaluation))
         except (CodesignError, OSError) as error:
             logger.warning("no details of design %s: %s", evaluation.design, error)
+
+    with ThreadPoolExecutor(min(len(missing), os.cpu_count() or 1)) as pool:  # the native chain releases the GIL
+        list(pool.map(compute, missing))
+
+
+def _picture(data: FigureData) -> bytes | None:
+    """PNG of the robot, None where it cannot be drawn."""
+    from PIL import Image
+
+    try:
+        picture = hero(data)
+    except CodesignError as error:
+        logger.warning("no picture of the robot: %s", error)
+        return None
+    if picture is None:
+        return None
+    stream = io.BytesIO()
+    Image.fromarray(picture).quantize(128, method=Image.Quantize.FASTOCTREE).save(stream, "PNG", optimize=True)
+    return stream.getvalue()
 
 
 def _shown(run: ReportData, details: dict[str, Detail]) -> dict[str, Detail]:

@@ -43,7 +43,10 @@ def page_document(
             {"key": v.name, "label": run.label(v), "unit": _unit(v.unit), "min": v.minimum, "max": v.maximum}
             for v in run.variables
         ],
-        "objectives": [{"key": o.key, "label": o.label, "unit": o.unit, "title": o.title} for o in run.objectives],
+        "objectives": [
+            {"key": o.key, "label": o.label, "unit": o.unit, "title": o.title, "view": run.view(k)}
+            for k, o in enumerate(run.objectives)
+        ],
         "constraints": [
             {"key": key, "label": constraint_quantity(key).label, "rule": _rule(run, key)} for key in constraints
         ],

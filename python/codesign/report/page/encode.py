@@ -61,13 +61,13 @@ def _flight(flight: FlightHistory) -> dict[str, Any]:
         "charts": [
             chart("Position error", "cm", 100.0 * flight["com_error"], ["centre of mass"]),
             chart("Attitude error", "°", flight["attitude_error"] / DEGREE, ["base"]),
-            chart("Jet thrusts", "N", flight["thrust"], _short_names(flight.jets), zero=False),
+            chart("Jet thrusts", "N", flight["thrust"], short_names(flight.jets), zero=False),
             chart("Joint velocity error", "°/s", flight["joint_velocity_error"] / DEGREE, groups),
         ],
     }
 
 
-def _short_names(names: tuple[str, ...]) -> list[str]:
+def short_names(names: tuple[str, ...]) -> list[str]:
     """Frame names without the words that all of them share: `l_arm_jet_turbine` -> `l arm`."""
     words = [name.split("_") for name in names]
     shared = set(words[0]).intersection(*words[1:]) if len(words) > 1 else set()

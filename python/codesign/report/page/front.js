@@ -18,16 +18,6 @@ function markers(indices, marker, label) {
   };
 }
 
-/** Axis range that shows the front, the original and most feasible designs; far outliers stay reachable by zooming out. */
-function range(k) {
-  const near = points(d => d.status === FEASIBLE).map(i => designs[i].f[k]).sort((a, b) => a - b);
-  const must = points(d => d.front || d === original).map(i => designs[i].f[k]);
-  const all = must.concat(near.length ? [near[0], near[Math.floor(0.93 * (near.length - 1))]] : []);
-  if (!all.length) return undefined;
-  const low = Math.min(...all), high = Math.max(...all), pad = 0.07 * (high - low) || 0.05 * Math.abs(high) || 1;
-  return [low - pad, high + pad];
-}
-
 function frontTraces() {
   const z = third(), best = points(d => d.front && d.status === FEASIBLE);
   const scale = known(z) ? {
@@ -53,7 +43,7 @@ function drawFront() {
   if (!plot) return;
   const [x, y] = [report.objectives[front.x], report.objectives[front.y]];
   Plotly.react(plot, frontTraces(), layout({
-    xaxis: axis(x.title, {range: range(front.x)}), yaxis: axis(y.title, {range: range(front.y)}), hovermode: 'closest', dragmode: 'zoom', hoverdistance: 24,
+    xaxis: axis(x.title, {range: x.view}), yaxis: axis(y.title, {range: y.view}), hovermode: 'closest', dragmode: 'zoom', hoverdistance: 24,
   }), settings);
   if (!front.ready) {
     front.ready = true;

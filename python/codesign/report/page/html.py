@@ -18,10 +18,16 @@ from codesign.report.page.summary import summary
 SCRIPTS = ("base.js", "front.js", "table.js", "design.js", "main.js")
 
 
-def render(run: ReportData, details: dict[str, Any] | None = None, files: dict[str, Any] | None = None) -> str:
+def render(
+    run: ReportData,
+    details: dict[str, Any] | None = None,
+    files: dict[str, Any] | None = None,
+    picture: bytes | None = None,
+) -> str:
     """The whole page as one HTML text that loads nothing from anywhere.
 
     details, files: by `details.detail_key`; fields and histories of designs, what can be downloaded of them.
+    picture: PNG of the robot with the recommended design's parts.
     """
     from plotly.offline import get_plotlyjs
 
@@ -36,7 +42,7 @@ def render(run: ReportData, details: dict[str, Any] | None = None, files: dict[s
         font=base64.b64encode(folder.joinpath("inter.woff2").read_bytes()).decode(),
         style=read["style.css"],
         navigation="".join(f'<a href="#{block.key}">{block.short}</a>' for block in blocks),
-        summary=summary(run),
+        summary=summary(run, picture),
         sections="\n".join(block.html for block in blocks),
         footer=f"<p>Made by codesign {escape(codesign.__version__)}. This file is complete: it needs no network.</p>",
         data=_json(page_document(run, details, files)),

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import base64
 from html import escape
 
 from codesign.report import words
 from codesign.report.data import ReportData
 
 
-def summary(run: ReportData) -> str:
-    """HTML of the first screen."""
+def summary(run: ReportData, picture: bytes | None = None) -> str:
+    """HTML of the first screen; picture: PNG of the robot with the parts that were optimised."""
     leads = [run.description, words.searched(run), words.gained(run)]
+    said = f"<h1>{escape(run.title)}</h1>" + "".join(f'<p class="lead">{escape(text)}</p>' for text in leads if text)
+    notes = "".join(f'<p class="notice">{escape(note)}</p>' for note in words.caveats(run))
+    shown = ""
+    if picture is not None:
+        source = base64.b64encode(picture).decode()
+        shown = (
+            f'<figure><img src="data:image/png;base64,{source}" alt="The robot, the optimised parts in blue">'
+            "<figcaption>In blue: the parts that were optimised</figcaption></figure>"
+        )
     return (
-        f'<section class="summary" aria-label="Summary"><h1>{escape(run.title)}</h1>'
-        + "".join(f'<p class="lead">{escape(text)}</p>' for text in leads if text)
-        + "".join(f'<p class="notice">{escape(note)}</p>' for note in words.caveats(run))
-        + f"{_tiles(run)}{_build(run)}</section>"
+        f'<section class="summary" aria-label="Summary"><div class="opening"><div>{said}{notes}</div>{shown}</div>'
+        f"{_tiles(run)}{_build(run)}</section>"
     )
 
 

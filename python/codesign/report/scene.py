@@ -1,0 +1,142 @@
+"""The robot of a design as solids that can be drawn: link shapes, the design's parts, postures, jets."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import yourdfpy
+from numpy.typing import NDArray
+
+from codesign.transforms import Matrix
+from codesign.urdf import RobotDescription
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+PLAIN = (0.72, 0.74, 0.77)  # of shapes without a colour
+SEGMENTS = 40  # of a round shape
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """A solid fixed to a link: points (n, 3) [m] in link axes, triangles (m, 3), colour 0 … 1.
+
+    part: the design's part that it is, None for the robot's own shapes.   values: (n,) what may colour it, say stress.
+    """
+
+    link: str
+    points: Array
+    triangles: Indices
+    colour: tuple[float, float, float] = PLAIN
+    part: str | None = None
+    values: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class RobotScene:
+    """Everything to draw a robot. jets: frames whose thrust pushes the robot along their −z."""
+
+    robot: RobotDescription
+    pieces: tuple[Piece, ...]
+    jets: tuple[str, ...] = ()
+    joints: tuple[str, ...] = field(default=())
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """Links that carry a piece."""
+        return tuple(dict.fromkeys(piece.link for piece in self.pieces))
+
+    def poses(self, joint_positions: Any = None, base: Matrix | None = None) -> dict[str, Matrix]:
+        """world_T_link of every link: (4, 4), or (k, 4, 4) for joint positions (k, joints) and base poses (k, 4, 4).
+
+        None: all joints at zero, the base at the world's origin.
+        """
+        named: Mapping[str, Any] = {}
+        if joint_positions is not None:
+            named = {name: joint_positions[..., i] for i, name in enumerate(self.joints)}
+        local = self.robot.frame_poses(named)
+        root = np.eye(4) if base is None else base
+        return {link: root @ pose for link, pose in local.items()}
+
+
+def robot_scene(study: Any, design: Mapping[str, float], fields: Mapping[str, Any] | None = None) -> RobotScene:
+    """The robot with a design's parts.
+
+    Args:
+        fields: part -> `details.StressField`: drawn instead of the part's surface, its stress as the pieces' values.
+    Raises: CodesignError if a part or the robot cannot be built.
+    """
+    checked = study.space.design(design)
+    config = study.configured(checked)
+    robot = RobotDescription.from_text(study.build_robot(checked))
+    parts = study.build_parts(checked)
+    placed: dict[str, list[Piece]] = {}
+    for part in config.parts:
+        for place in part.placements:
+            placed.setdefault(place.link, []).append(
+                _part_piece(part.name, parts[part.name], place, (fields or {}).get(part.name))
+            )
+    pieces: list[Piece] = []
+    colours = _materials(robot)
+    for link in robot.link_names:
+        pieces += placed.get(link) or _link_pieces(robot, link, colours)
+    joints = tuple(joint for group in config.flight.joint_groups for joint in group.joints)
+    return RobotScene(robot, tuple(pieces), tuple(config.flight.jets.frames), joints)
+
+
+def _part_piece(name: str, part: Any, place: Any, stress: Any) -> Piece:
+    if stress is None:
+        surface = part.surface(96)
+        points, triangles, values = np.asarray(surface.points), np.asarray(surface.triangles), None
+    else:
+        points, triangles, values = stress.points, stress.triangles, stress.von_mises
+    if place.mirror is not None:
+        points = points * np.where(np.arange(3) == "xyz".index(place.mirror), -1.0, 1.0)
+        triangles = triangles[:, ::-1]
+    pose = place.link_T_part.matrix()
+    return Piece(
+        place.link, points @ pose[:3, :3].T + pose[:3, 3], triangles.astype(np.int64), part=name, values=values
+    )
+
+
+def _materials(robot: RobotDescription) -> dict[str, tuple[float, float, float]]:
+    """Colours of the robot's named materials."""
+    text = io.BytesIO(robot.to_text().encode())
+    read = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
+    return {m.name: tuple(m.color.rgba[:3]) for m in read.materials if m.color is not None}
+
+
+def _link_pieces(robot: RobotDescription, link: str, colours: Mapping[str, tuple[float, float, float]]) -> list[Piece]:
+    """The link's own shapes; meshes that are not here are left out."""
+    pieces = []
+    for visual in robot.link(link).visuals:
+        shape = _primitive(visual.geometry)
+        if shape is None:
+            continue
+        origin = np.eye(4) if visual.origin is None else visual.origin
+        colour = PLAIN
+        if visual.material is not None:
+            own = visual.material.color
+            colour = tuple(own.rgba[:3]) if own is not None else colours.get(visual.material.name, PLAIN)
+        points = np.asarray(shape.vertices) @ origin[:3, :3].T + origin[:3, 3]
+        pieces.append(Piece(link, points, np.asarray(shape.faces, dtype=np.int64), colour))
+    return pieces
+
+
+def _primitive(geometry: Any) -> Any:
+    from trimesh import creation
+
+    if geometry is None:
+        return None
+    if geometry.box is not None:
+        return creation.box(extents=geometry.box.size)
+    if geometry.cylinder is not None:
+        return creation.cylinder(geometry.cylinder.radius, geometry.cylinder.length, sections=SEGMENTS)
+    if geometry.sphere is not None:
+        return creation.icosphere(subdivisions=3, radius=geometry.sphere.radius)
+    return None
