@@ -270,6 +270,9 @@ void bind_model(py::module_& m) {
       .def_property_readonly(
           "frame_names", [](const PyModel& model) { return names(model.frames); },
           "Names of all links, fixed and locked ones included, in the order of the URDF.")
+      .def_property_readonly(
+          "base_link", [](const PyModel& model) { return model.bodies.front().name; },
+          "Name of the root link, whose pose is base_pose.")
       .def_property_readonly("joint_limits", &joint_limits,
                              "Name to lower, upper [rad, m], velocity and effort, as in the URDF. "
                              "For information: no function applies them.")

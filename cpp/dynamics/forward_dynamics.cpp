@@ -20,11 +20,9 @@ void start_bodies(const Model& model, const KinematicsData& kin, const InertiaDa
     const RigidInertia& own = inertia.bodies[i];
     ArticulatedData::Body& body = articulated.bodies[i];
     const Vector3d arm = own.com - kin.bodies[i].p;
-    const Vector3d first_moment = own.mass * arm;
     body.linear = Vector3d::Constant(own.mass).asDiagonal();
-    body.coupling = -skew(first_moment);
-    body.angular = own.inertia - first_moment * arm.transpose();
-    body.angular.diagonal().array() += first_moment.dot(arm);
+    body.coupling = -skew(own.mass * arm);
+    body.angular = own.inertia + point_inertia(own.mass, arm);
     const ForceData::Wrench bias = bias_wrench(kin.bodies[i], own, velocity.bodies[i]);
     body.force = bias.force;
     body.moment = bias.moment;

@@ -18,7 +18,12 @@ void compute_inertias(const Model& model, const KinematicsData& kin, InertiaData
     world.mass = own.mass;
     world.com = pose.p + pose.R * own.com;
     const Matrix3d half = pose.R * own.inertia;
-    world.inertia.noalias() = half * pose.R.transpose();
+    for (int row = 0; row < 3; ++row) {  // R I Rᵀ, symmetric to the last bit
+      for (int column = row; column < 3; ++column) {
+        world.inertia(row, column) = half.row(row).dot(pose.R.row(column));
+        world.inertia(column, row) = world.inertia(row, column);
+      }
+    }
     inertia.subtrees[i] = world;
   }
   for (std::size_t i = model.bodies.size() - 1; i > 0; --i) {

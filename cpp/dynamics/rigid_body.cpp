@@ -19,8 +19,7 @@ void mass_matrix(const Model& model, const KinematicsData& kin, const InertiaDat
     M.diagonal().head<3>().setConstant(all.mass);
     M.block<3, 3>(3, 0) = skew(all.mass * all.com);
     M.block<3, 3>(0, 3) = M.block<3, 3>(3, 0).transpose();
-    M.block<3, 3>(3, 3) = all.inertia - all.mass * (all.com * all.com.transpose());
-    M.block<3, 3>(3, 3).diagonal().array() += all.mass * all.com.squaredNorm();
+    M.block<3, 3>(3, 3) = all.inertia + point_inertia(all.mass, all.com);
   }
   for (int j = model.body_count() - 1; j > 0; --j) {
     const auto body_j = static_cast<std::size_t>(j);

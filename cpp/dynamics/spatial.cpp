@@ -94,9 +94,8 @@ RigidInertia operator+(const RigidInertia& a, const RigidInertia& b) {
   if (!(mass > 0.0)) return {mass, a.com, a.inertia + b.inertia};
   const Vector3d d = b.com - a.com;
   const double reduced_mass = a.mass * (b.mass / mass);
-  Matrix3d inertia = a.inertia + b.inertia - reduced_mass * (d * d.transpose());
-  inertia.diagonal().array() += reduced_mass * d.squaredNorm();
-  return {mass, a.com + (b.mass / mass) * d, inertia};
+  return {mass, a.com + (b.mass / mass) * d,
+          a.inertia + b.inertia + point_inertia(reduced_mass, d)};
 }
 
 }  // namespace codesign::dynamics

@@ -47,6 +47,16 @@ struct RigidInertia {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 };
 
+// Inertia m (|d|² 1 - d dᵀ) of a point mass about a point at distance d [kg m²]; exactly symmetric.
+inline Eigen::Matrix3d point_inertia(double mass, const Eigen::Vector3d& d) {
+  const double x = mass * d.x(), y = mass * d.y(), z = mass * d.z();
+  const double xx = x * d.x(), yy = y * d.y(), zz = z * d.z();
+  const double xy = -x * d.y(), xz = -x * d.z(), yz = -y * d.z();
+  Eigen::Matrix3d inertia;
+  inertia << yy + zz, xy, xz, xy, zz + xx, yz, xz, yz, xx + yy;
+  return inertia;
+}
+
 // The same body seen from frame a.
 RigidInertia transform(const Pose& a_T_b, const RigidInertia& body);
 
