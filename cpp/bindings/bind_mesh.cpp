@@ -1,9 +1,273 @@
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <map>
+#include <optional>
+#include <variant>
+
 #include "bindings/bindings.hpp"
+#include "errors.hpp"
+#include "fem/mass_properties.hpp"
+#include "fem/mesh_quality.hpp"
+#include "fem/size_field.hpp"
+#include "fem/stl.hpp"
+#include "fem/surface_check.hpp"
+#include "fem/surface_features.hpp"
+#include "fem/tet_mesher.hpp"
+#include "fem/tet_topology.hpp"
 
 namespace py = pybind11;
+using py::literals::operator""_a;
 
 namespace codesign {
 
-void bind_mesh(py::module_& m) { (void)m; }
+namespace {
+
+using namespace fem;  // NOLINT: the whole file binds this namespace
+
+// Read-only NumPy view of values that `owner` keeps alive.
+py::array view(const std::vector<int>& values, py::handle owner) {
+  py::array_t<int> array(static_cast<py::ssize_t>(values.size()), values.data(), owner);
+  array.attr("setflags")("write"_a = false);
+  return array;
+}
+
+SurfaceMesh make_surface(const Points& points, const Triangles& triangles,
+                         std::optional<std::vector<int>> face,
+                         std::optional<std::vector<std::string>> face_names) {
+  if (face.has_value() != face_names.has_value())
+    throw std::invalid_argument("face and face_names: give both or none");
+  SurfaceMesh surface{points, triangles, {}, {""}};
+  surface.face.assign(static_cast<std::size_t>(triangles.rows()), 0);
+  if (face) surface.face = *face;
+  if (face_names) surface.face_names = *face_names;
+  check_arrays(surface);
+  return surface;
+}
+
+SurfaceMesh load_surface(const std::filesystem::path& file, double scale,
+                         double feature_angle_deg) {
+  SurfaceMesh surface = read_stl(file.string(), scale);
+  try {
+    check_surface(surface);
+    check_self_intersection(surface);
+  } catch (const MeshError& e) {
+    throw MeshError(file.string() + ": " + e.what());
+  }
+  label_by_angle(surface, feature_angle_deg * kDegree);
+  return surface;
+}
+
+void bind_surface(py::module_& m) {
+  py::class_<SurfaceMesh>(m, "SurfaceMesh", R"(Triangles that belong to named faces, in metres.
+
+Args:
+    points: (n, 3) m.
+    triangles: (m, 3) indices, counter-clockwise seen from outside.
+    face: (m,) index into face_names; one unnamed face if absent.
+    face_names: names, "" for an unnamed face.
+
+Raises:
+    ValueError: sizes or indices that do not fit; a name given twice.
+    MeshError: a coordinate that is not finite.)")
+      .def(py::init(&make_surface), "points"_a, "triangles"_a, "face"_a = py::none(),
+           "face_names"_a = py::none())
+      .def_readonly("points", &SurfaceMesh::points, "(n, 3) m")
+      .def_readonly("triangles", &SurfaceMesh::triangles, "(m, 3)")
+      .def_property_readonly(
+          "face",
+          [](py::object self) { return view(self.cast<const SurfaceMesh&>().face, self); },
+          "(m,) index into face_names")
+      .def_readonly("face_names", &SurfaceMesh::face_names)
+      .def("__repr__", [](const SurfaceMesh& surface) {
+        return py::str("SurfaceMesh({} points, {} triangles, {} faces)")
+            .format(surface.points.rows(), surface.triangles.rows(), surface.face_names.size());
+      });
+  m.def("load_surface", &load_surface, "path"_a, "scale"_a = 1.0, py::kw_only(),
+        "feature_angle_deg"_a = 40.0, py::call_guard<py::gil_scoped_release>(),
+        R"(Closed surface of an STL file, binary or ASCII, in metres.
+
+Args:
+    path: the file.
+    scale: metres per unit of the file; 1e-3 for millimetres.
+    feature_angle_deg: edges sharper than this bound the (unnamed) faces.
+
+Raises:
+    MeshError: unreadable, truncated, not finite, empty, huge, open, inside-out, not manifold,
+        self-intersecting; the message says what, where and why.)");
+}
+
+void bind_mass_properties(py::module_& m) {
+  py::class_<MassProperties>(m, "MassProperties", "Mass, centre of mass and inertia of a solid.")
+      .def_readonly("volume", &MassProperties::volume, "m³")
+      .def_readonly("mass", &MassProperties::mass, "kg")
+      .def_readonly("com", &MassProperties::com, "(3,) m, axes of the surface")
+      .def_readonly("inertia", &MassProperties::inertia,
+                    "(3, 3) kg m² about the centre of mass, axes of the surface");
+  m.def("mass_properties", &mass_properties, "surface"_a, "density"_a,
+        py::call_guard<py::gil_scoped_release>(),
+        R"(Mass, centre of mass and inertia of the polyhedron inside a closed surface.
+
+Args:
+    surface: closed and outward-oriented.
+    density: kg/m³, positive.
+
+Raises:
+    MeshError: the surface bounds no solid.
+    ValueError: density is not positive.)");
+}
+
+void bind_size_field(py::module_& m) {
+  py::class_<SizeSource>(m, "SizeSource", R"(A polyline near which elements are small.
+
+Args:
+    points: (k, 3) m; one row is a point.
+    size: edge length within `radius` of the polyline [m].
+    growth: increase of the edge length per metre of distance beyond `radius`.
+    radius: m.)")
+      .def(py::init<Points, double, double, double>(), "points"_a, "size"_a, "growth"_a = 0.5,
+           "radius"_a = 0.0)
+      .def_readonly("points", &SizeSource::points)
+      .def_readonly("size", &SizeSource::size)
+      .def_readonly("growth", &SizeSource::growth)
+      .def_readonly("radius", &SizeSource::radius);
+  py::class_<SizeField>(m, "SizeField", R"(Edge length wanted at each point.
+
+min(base, size + growth * max(0, distance - radius)) over all sources; metres.)")
+      .def(py::init([](double base, std::vector<SizeSource> sources) {
+             SizeField field{base, std::move(sources)};
+             check_size_field(field);
+             return field;
+           }),
+           "base"_a, "sources"_a = std::vector<SizeSource>{})
+      .def_readonly("base", &SizeField::base)
+      .def_readonly("sources", &SizeField::sources)
+      .def(
+          "__call__",
+          [](const SizeField& field, const Points& points) {
+            Eigen::VectorXd sizes(points.rows());
+            for (Eigen::Index i = 0; i < points.rows(); ++i)
+              sizes[i] = size_at(field, points.row(i).transpose());
+            return sizes;
+          },
+          "points"_a, "Edge length [m] at points (k, 3) m.");
+}
+
+template <class Tets>
+TetMesh make_mesh(const Points& nodes, const Tets& tets,
+                  const std::map<std::string, Triangles>& faces) {
+  TetMesh mesh = make_tet_mesh(nodes, tets);
+  std::vector<NamedSides> named;
+  for (const auto& [name, sides] : faces) named.push_back({name, sides});
+  name_faces(mesh, named);
+  return mesh;
+}
+
+void bind_tet_mesh(py::module_& m) {
+  const std::map<std::string, Triangles> no_faces;
+  py::class_<TetMesh>(m, "TetMesh", R"(Ten-node tetrahedra with named boundary faces.
+
+Args:
+    nodes: (n, 3) m.
+    tets: (m, 4), which get straight mid-edge nodes, or (m, 10) with mid-edge nodes on edges
+        01 12 02 03 13 23. Elements given inside out are turned over.
+    faces: name -> (k, 3) boundary sides by their corner nodes.
+
+Raises:
+    MeshError: flat elements, nodes without element, indices out of range, sides that are not on
+        the boundary.)")
+      .def(py::init(&make_mesh<Tets10>), "nodes"_a, "tets"_a, "faces"_a = no_faces)
+      .def(py::init(&make_mesh<Tets4>), "nodes"_a, "tets"_a, "faces"_a = no_faces)
+      .def_readonly("nodes", &TetMesh::nodes, "(n, 3) m")
+      .def_readonly("tets", &TetMesh::tets, "(m, 10); mid-edge nodes on 01 12 02 03 13 23")
+      .def_readonly("boundary", &TetMesh::boundary, "(b, 6); mid-edge nodes on 01 12 20")
+      .def_property_readonly(
+          "boundary_face",
+          [](py::object self) { return view(self.cast<const TetMesh&>().boundary_face, self); },
+          "(b,) index into face_names")
+      .def_readonly("face_names", &TetMesh::face_names)
+      .def_property_readonly("quality", &measure_quality, "MeshQuality of the elements")
+      .def("__repr__", [](const TetMesh& mesh) {
+        return py::str("TetMesh({} nodes, {} tetrahedra)")
+            .format(mesh.nodes.rows(), mesh.tets.rows());
+      });
+  py::class_<MeshQuality>(m, "MeshQuality", "Shape of the tetrahedra between their corners.")
+      .def_property_readonly("min_dihedral_deg",
+                             [](const MeshQuality& q) { return q.min_dihedral / kDegree; })
+      .def_property_readonly("max_dihedral_deg",
+                             [](const MeshQuality& q) { return q.max_dihedral / kDegree; })
+      .def_readonly("min_radius_ratio", &MeshQuality::min_radius_ratio,
+                    "3 inscribed / circumscribed radius; 1 regular, 0 flat")
+      .def_readonly("mean_radius_ratio", &MeshQuality::mean_radius_ratio)
+      .def_readonly("worst_tet", &MeshQuality::worst_tet, "of the smallest dihedral angle")
+      .def_readonly("below_5_degrees", &MeshQuality::below_5_degrees,
+                    "elements with a dihedral angle below 5 degrees")
+      .def_readonly("volume", &MeshQuality::volume, "m³")
+      .def_readonly("area", &MeshQuality::area, "m²");
+}
+
+TetMesh make_tets(const SurfaceMesh& surface, const std::variant<double, SizeField>& edge_length,
+                  double feature_angle_deg, double facet_distance, double facet_angle_deg,
+                  double radius_edge, double sliver_angle_deg, double flat_angle_deg,
+                  double time_limit, std::size_t max_vertices, bool check_intersections) {
+  const SizeField size = std::holds_alternative<double>(edge_length)
+                             ? SizeField{std::get<double>(edge_length), {}}
+                             : std::get<SizeField>(edge_length);
+  MeshOptions options;
+  options.feature_angle = feature_angle_deg * kDegree;
+  options.facet_distance = facet_distance;
+  options.facet_angle = facet_angle_deg * kDegree;
+  options.radius_edge = radius_edge;
+  options.sliver_angle = sliver_angle_deg * kDegree;
+  options.flat_angle = flat_angle_deg * kDegree;
+  options.time_limit = time_limit;
+  options.max_vertices = max_vertices;
+  options.check_intersections = check_intersections;
+  return tetrahedralize(surface, size, options);
+}
+
+void bind_mesher(py::module_& m) {
+  const MeshOptions defaults;
+  m.def("tetrahedralize", &make_tets, "surface"_a, "edge_length"_a, py::kw_only(),
+        "feature_angle_deg"_a = 40.0, "facet_distance"_a = defaults.facet_distance,
+        "facet_angle_deg"_a = 25.0, "radius_edge"_a = defaults.radius_edge,
+        "sliver_angle_deg"_a = 6.0, "flat_angle_deg"_a = 6.0, "time_limit"_a = defaults.time_limit,
+        "max_vertices"_a = defaults.max_vertices,
+        "check_intersections"_a = defaults.check_intersections,
+        py::call_guard<py::gil_scoped_release>(),
+        R"(Ten-node tetrahedra of the solid inside a closed surface.
+
+Sharp edges and borders between different faces become lines of the mesh, and each boundary side
+carries the face of the surface it lies on. The same input gives the same mesh.
+
+Args:
+    surface: closed, outward-oriented, one solid.
+    edge_length: m, or a SizeField.
+    feature_angle_deg: edges sharper than this are kept.
+    facet_distance: of boundary sides to the surface, relative to the edge length.
+    facet_angle_deg: smallest angle of a boundary side, at most 30.
+    radius_edge: largest circumradius over shortest edge, at least 2.
+    sliver_angle_deg: elements with a smaller dihedral angle are improved where possible.
+    flat_angle_deg: flatter boundary elements on one face are removed.
+    time_limit: processor seconds.
+    max_vertices: of corner nodes.
+    check_intersections: look for triangles that cross each other first.
+
+Raises:
+    MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces or of
+        wrong volume; a limit was reached.
+    ValueError: an option out of range.)");
+}
+
+}  // namespace
+
+void bind_mesh(py::module_& m) {
+  bind_surface(m);
+  bind_mass_properties(m);
+  bind_size_field(m);
+  bind_tet_mesh(m);
+  bind_mesher(m);
+}
 
 }  // namespace codesign

@@ -3,7 +3,6 @@
 
 #include "bindings/bindings.hpp"
 #include "fem/static_solver.hpp"
-#include "fem/tet_topology.hpp"
 
 namespace py = pybind11;
 using py::literals::operator""_a;
@@ -78,21 +77,6 @@ void bind_supports_and_loads(py::module_& m) {
         py::call_guard<py::gil_scoped_release>());
 }
 
-void bind_tet_mesh(py::module_& m) {
-  py::class_<TetMesh>(m, "TetMesh", "Mesh of ten-node tetrahedra with named boundary faces.")
-      .def(py::init(
-               [](const Points& nodes, const Tets10& tets) { return make_tet_mesh(nodes, tets); }),
-           "nodes"_a, "tets"_a)
-      .def(py::init(
-               [](const Points& nodes, const Tets4& tets) { return make_tet_mesh(nodes, tets); }),
-           "nodes"_a, "tets"_a)
-      .def_readonly("nodes", &TetMesh::nodes, "(n, 3) m")
-      .def_readonly("tets", &TetMesh::tets, "(m, 10); mid-edge nodes on 01 12 02 03 13 23")
-      .def_readonly("boundary", &TetMesh::boundary, "(b, 6); mid-edge nodes on 01 12 20")
-      .def_readonly("boundary_face", &TetMesh::boundary_face, "(b) index into face_names")
-      .def_readonly("face_names", &TetMesh::face_names);
-}
-
 void bind_result(py::module_& m) {
   py::class_<StaticSettings>(m, "StaticSettings")
       .def(py::init<>())
@@ -125,7 +109,6 @@ void bind_result(py::module_& m) {
 
 void bind_static(py::module_& m) {
   bind_material(m);
-  bind_tet_mesh(m);
   bind_selection(m);
   bind_supports_and_loads(m);
   bind_result(m);

@@ -1,5 +1,15 @@
 """Finite elements: meshes, supports, loads, stress and safety factor. SI units throughout."""
 
+from codesign._core.fem import (
+    MassProperties,
+    MeshQuality,
+    SizeField,
+    SizeSource,
+    SurfaceMesh,
+    load_surface,
+    mass_properties,
+    tetrahedralize,
+)
 from codesign.fem_model import (
     Acceleration,
     AffineTraction,
@@ -29,19 +39,27 @@ __all__ = [
     "Disc",
     "Force",
     "Load",
+    "MassProperties",
     "Material",
+    "MeshQuality",
     "Pressure",
     "Selection",
+    "SizeField",
+    "SizeSource",
     "StaticResult",
     "StaticSystem",
     "Support",
+    "SurfaceMesh",
     "TetMesh",
     "Traction",
     "faces_in_box",
     "faces_near",
     "faces_with_normal",
+    "load_surface",
+    "mass_properties",
     "select_faces",
     "select_nodes",
     "select_union",
     "solve_static",
+    "tetrahedralize",
 ]

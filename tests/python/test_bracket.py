@@ -11,7 +11,7 @@ POCKET_FLOOR_MM2 = np.pi * 23.0**2 - 6.0 * np.pi * 1.6**2
 
 
 def face_area(surface: SurfaceMesh, name: str) -> float:
-    triangles = surface.triangles[surface.face == list(surface.face_names).index(name)]
+    triangles = surface.triangles[surface.face == surface.face_names.index(name)]
     a, b, c = (surface.points[triangles[:, k]] for k in range(3))
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
 
@@ -57,14 +57,3 @@ def test_analysed_shapes_have_their_faces(geometry: str, support: str, angle: fl
 def test_values_out_of_range_are_refused_by_name(angle: float, distance: float, name: str) -> None:
     with pytest.raises(GeometryError, match=rf"jetpack_bracket: {name} = .* its limit"):
         JetpackBracket(angle, distance)
-
-
-def test_refusal_names_value_limit_and_reason() -> None:
-    with pytest.raises(
-        GeometryError, match=r"distance = 20 mm is below its limit 23\.0\d+ mm \(2 mm wall between seat and"
-    ):
-        JetpackBracket(15, 20)
-    with pytest.raises(
-        GeometryError, match=r"angle = 89\.4 deg is above its limit 89\.\d+ deg \(2 mm wall between screw"
-    ):
-        JetpackBracket(89.4, 60)

@@ -1,0 +1,84 @@
+#include "fem/tet_mesher.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "errors.hpp"
+#include "fem/delaunay_mesher.hpp"
+#include "fem/linear_tets.hpp"
+#include "fem/mesh_quality.hpp"
+#include "fem/surface_check.hpp"
+#include "fem/surface_features.hpp"
+
+namespace codesign::fem {
+namespace {
+
+constexpr double kCrumb = 1e-4;  // pieces smaller than this part of the mesh are dropped
+constexpr double kStraightAngle = 168.0 * kDegree;
+
+void check_options(const MeshOptions& options) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw std::invalid_argument(what);
+  };
+  require(options.feature_angle > 0.0 && options.feature_angle < 180.0 * kDegree,
+          "feature_angle: between 0 and 180 degrees");
+  require(options.facet_distance > 0.0 && options.facet_distance <= 1.0,
+          "facet_distance: relative to the edge length, in (0, 1]");
+  require(options.facet_angle >= 0.0 && options.facet_angle <= 30.0 * kDegree,
+          "facet_angle: at most 30 degrees, or the refinement may not end");
+  require(options.radius_edge >= 2.0, "radius_edge: at least 2, or the refinement may not end");
+  require(options.time_limit > 0.0, "time_limit: must be positive");
+}
+
+// How much the boundary may differ from the surface: sides keep the facet distance, sharp edges are
+// lines of the mesh.
+void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, const SizeField& size,
+                           const MeshOptions& options) {
+  if (const int pieces = count_pieces(mesh); pieces != 1)
+    throw MeshError("the mesh falls into " + std::to_string(pieces) +
+                    " pieces: the surface bounds several solids, or an edge length larger than a "
+                    "thin wall tore it");
+  const MeshQuality quality = measure_quality(mesh);
+  if (!(quality.min_dihedral > 0.0))
+    throw MeshError("tetrahedron " + std::to_string(quality.worst_tet) + " of the mesh is flat");
+  double slack = 0.0;
+  for (Eigen::Index i = 0; i < mesh.boundary.rows(); ++i) {
+    const Eigen::Vector3d a = mesh.nodes.row(mesh.boundary(i, 0)).transpose();
+    const Eigen::Vector3d b = mesh.nodes.row(mesh.boundary(i, 1)).transpose();
+    const Eigen::Vector3d c = mesh.nodes.row(mesh.boundary(i, 2)).transpose();
+    const double area = 0.5 * (b - a).cross(c - a).norm();
+    slack += area * options.facet_distance * size_at(size, (a + b + c) / 3.0);
+  }
+  const double volume = enclosed_volume(surface);
+  if (std::abs(quality.volume - volume) > slack + 1e-6 * volume)
+    throw MeshError("the mesh has the volume " + std::to_string(quality.volume * 1e9) +
+                    " mm³ where the surface encloses " + std::to_string(volume * 1e9) + " mm³");
+}
+
+}  // namespace
+
+TetMesh tetrahedralize(const SurfaceMesh& surface, const SizeField& size,
+                       const MeshOptions& options, MeshReport* report) {
+  check_options(options);
+  check_size_field(size);
+  check_surface(surface);
+  if (options.check_intersections) check_self_intersection(surface);
+  const Patches patches = find_patches(surface, options.feature_angle);
+  LinearTets tets = delaunay_mesh(surface, patches, size, options);
+  if (tets.tets.empty()) throw MeshError("the mesh is empty");
+  const int crumbs = remove_crumbs(tets, kCrumb);
+  for (std::array<int, 4>& labels : tets.side_label)
+    for (int& label : labels)
+      if (label >= 0) label = patches.face[static_cast<std::size_t>(label)];
+  const int peeled = peel_flat_tets(tets, options.flat_angle, kStraightAngle);
+  TetMesh mesh = to_quadratic(tets, surface.face_names);
+  check_against_surface(mesh, surface, size, options);
+  if (report) *report = {peeled, crumbs};
+  return mesh;
+}
+
+}  // namespace codesign::fem

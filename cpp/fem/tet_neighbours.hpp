@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "fem/tet_mesh.hpp"
+
+namespace codesign::fem {
+
+using Tets4 = Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
+// Corner columns of the four sides of a tetrahedron, counter-clockwise seen from outside; side k is
+// opposite to corner k.
+inline constexpr int kTetSides[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+// neighbours[t][k]: the tetrahedron across side k of tetrahedron t, or -1 on the boundary. Throws
+// MeshError if three tetrahedra share a side.
+using TetNeighbours = std::vector<std::array<int, 4>>;
+TetNeighbours tet_neighbours(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>>& tets);
+
+// Piece of each tetrahedron (connected through sides), numbered from 0, and the number of pieces.
+std::pair<std::vector<int>, int> find_pieces(const TetNeighbours& neighbours);
+
+// Key of an undirected edge between two nodes.
+inline std::uint64_t edge_key(int a, int b) {
+  const auto low = static_cast<std::uint32_t>(a < b ? a : b);
+  const auto high = static_cast<std::uint32_t>(a < b ? b : a);
+  return std::uint64_t{high} << 32 | low;
+}
+
+}  // namespace codesign::fem
