@@ -11,7 +11,7 @@ from codesign.geometry.part import Part
 from codesign.geometry.profile import Vector
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Component:
     """A part at root_T_part (4, 4) [m], called `name` there; several components may share a part."""
 

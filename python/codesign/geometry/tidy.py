@@ -37,26 +37,43 @@ class _Surface:
     def __init__(self, points: Vector, triangles: Indices, face: Indices) -> None:
         self.points, self.triangles, self.face = points, triangles.copy(), face
         self.alive = np.ones(len(triangles), dtype=bool)
+        self._near = np.arange(0)  # triangles in which the points under repair are looked up
 
     def short_edges(self) -> list[tuple[int, int]]:
         """Edges below the tolerance, shortest first."""
         edges = np.concatenate([self.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
         edges = edges[edges[:, 0] < edges[:, 1]]
-        length = np.linalg.norm(self.points[edges[:, 1]] - self.points[edges[:, 0]], axis=1)
-        order = np.argsort(length, kind="stable")
-        return [(int(a), int(b)) for a, b in edges[order[: np.count_nonzero(length < SHORTEST_EDGE)]]]
+        squared = ((self.points[edges[:, 1]] - self.points[edges[:, 0]]) ** 2).sum(axis=1)
+        short = np.flatnonzero(squared < SHORTEST_EDGE**2)
+        edges = edges[short[np.argsort(squared[short], kind="stable")]]
+        self._look_near(edges)
+        return [(int(a), int(b)) for a, b in edges]
 
     def flat_triangles(self) -> list[int]:
         """Triangles lower than the tolerance."""
         corners = self.points[self.triangles]
         sides = np.roll(corners, -1, axis=1) - corners
-        twice_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-        flat = twice_area < SMALLEST_HEIGHT * np.linalg.norm(sides, axis=2).max(axis=1)
-        return [int(k) for k in np.flatnonzero(flat & self.alive)]
+        doubled = ((np.cross(sides[:, 0], sides[:, 1])) ** 2).sum(axis=1)
+        longest = (sides**2).sum(axis=2).max(axis=1)
+        flat = np.flatnonzero((doubled < SMALLEST_HEIGHT**2 * longest) & self.alive)
+        self._look_near(self.triangles[flat])
+        return [int(k) for k in flat]
+
+    def _look_near(self, points: Indices) -> None:
+        marked = np.zeros(len(self.points), dtype=bool)
+        marked[points.ravel()] = True
+        self._near = np.flatnonzero(marked[self.triangles].any(axis=1))
+
+    def _around(self, *points: int) -> Indices:
+        """Living triangles that use all the points."""
+        near = self._near[self.alive[self._near]]
+        for point in points:
+            near = near[(self.triangles[near] == point).any(axis=1)]
+        return near
 
     def shrink(self, first: int, second: int) -> None:
         """Moves one end of an edge onto the other, if that folds nothing."""
-        around = {v: np.flatnonzero((self.triangles == v).any(axis=1) & self.alive) for v in (first, second)}
+        around = {v: self._around(v) for v in (first, second)}
         shared = np.intersect1d(around[first], around[second])
         if len(shared) != 2 or np.linalg.norm(self.points[first] - self.points[second]) >= SHORTEST_EDGE:
             return
@@ -84,12 +101,11 @@ class _Surface:
         sides = self.points[np.roll(corners, -1)] - self.points[corners]
         k = int(np.linalg.norm(sides, axis=1).argmax())
         a, b, tip = (int(corners[(k + i) % 3]) for i in range(3))
-        other = np.flatnonzero((self.triangles == a).any(axis=1) & (self.triangles == b).any(axis=1) & self.alive)
-        other = other[other != flat]
+        other = np.setdiff1d(self._around(a, b), [flat])
         if len(other) != 1 or self.face[other[0]] != self.face[flat]:
             return
         opposite = int(np.setdiff1d(self.triangles[other[0]], [a, b])[0])
-        if ((self.triangles == tip).any(axis=1) & (self.triangles == opposite).any(axis=1) & self.alive).any():
+        if len(self._around(tip, opposite)):
             return
         new = np.array([[tip, a, opposite], [opposite, b, tip]])
         before = self._normals(self.triangles[other])[0]

@@ -23,6 +23,7 @@ SEAT_HOLES = polar(19.7, 10.0, -10.0, 110.0, -110.0, 130.0, -130.0)
 SCREWS = [(4.0, 10.0), (4.0, -10.0)]
 COUNTERBORE_RADIUS, COUNTERBORE_DEPTH = 3.0, 3.4  # of the seat's holes, from the upper face
 SCREW_RADIUS = 4.2
+TURBINE_REACH = 95.0  # from the seat's centre to the turbine's axis on the right; 94.5 on the left
 MINIMUM_WALL = 2.0
 FAR = 400.0  # beyond the part, for tools that cut through
 
@@ -182,5 +183,10 @@ class JetpackBracket(Part):
     def upper_crease(self) -> Vector:
         """(3,) point of the upper crease in the plane of symmetry [m]; the crease is parallel to y."""
         return np.array([self._upper_crease_x, 0.0, BASE]) * MILLIMETRE
+
+    @property
+    def turbine_axis(self) -> Vector:
+        """(3,) point of the turbine's axis, which is parallel to the slab's normal, in the plane of the seat [m]."""
+        return self.seat_centre + TURBINE_REACH * MILLIMETRE * self.slab_direction
 
     half_width = HALF_WIDTH * MILLIMETRE
