@@ -1,9 +1,61 @@
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <map>
+
 #include "bindings/bindings.hpp"
+#include "bindings/evaluate.hpp"
 
 namespace py = pybind11;
+using py::literals::operator""_a;
 
 namespace codesign {
 
-void bind_evaluate(py::module_& m) { (void)m; }
+namespace {
+
+fem::PartCase make_case(fem::SurfaceMesh surface, fem::SizeField size, fem::Material material,
+                        std::vector<fem::Support> supports, std::vector<fem::Load> loads,
+                        const fem::StaticSettings& settings, double facet_angle_deg) {
+  fem::PartCase part;
+  part.surface = std::move(surface);
+  part.size = std::move(size);
+  part.mesh_options.facet_angle = facet_angle_deg * fem::kDegree;
+  part.material = std::move(material);
+  part.supports = std::move(supports);
+  part.loads = std::move(loads);
+  part.settings = settings;
+  return part;
+}
+
+}  // namespace
+
+void bind_evaluate(py::module_& m) {
+  py::class_<fem::PartCase>(m, "PartCase",
+                            "One part and its load case; supports and loads name surface faces.")
+      .def(py::init(&make_case), py::kw_only(), "surface"_a, "size"_a, "material"_a, "supports"_a,
+           "loads"_a, "settings"_a = fem::StaticSettings{}, "facet_angle_deg"_a = 25.0);
+  py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")
+      .def_readonly("mesh", &fem::PartAnalysis::mesh)
+      .def_readonly("result", &fem::PartAnalysis::result)
+      .def_readonly("mesh_seconds", &fem::PartAnalysis::mesh_seconds)
+      .def_readonly("solve_seconds", &fem::PartAnalysis::solve_seconds);
+  m.def("analyse_part", &fem::analyse_part, "part"_a, py::call_guard<py::gil_scoped_release>(),
+        "Surface to safety factor. Raises MeshError, SolverError.");
+
+  py::class_<DesignResult>(m, "DesignResult")
+      .def_readonly("parts", &DesignResult::parts, "PartAnalysis in the order of the cases")
+      .def_readonly("flight", &DesignResult::flight)
+      .def_property_readonly(
+          "seconds",
+          [](const DesignResult& result) {
+            return std::map<std::string, double>{{"fem", result.fem_seconds},
+                                                 {"flight", result.flight_seconds}};
+          },
+          "wall clock");
+  m.def("evaluate", &evaluate, "parts"_a, "urdf"_a, "flight"_a,
+        py::call_guard<py::gil_scoped_release>(),
+        "Meshes and solves every part, loads the robot and flies it: the native half of the chain "
+        "in one call, without the GIL.");
+}
 
 }  // namespace codesign

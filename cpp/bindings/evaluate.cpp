@@ -1,0 +1,35 @@
+#include "bindings/evaluate.hpp"
+
+#include <chrono>
+
+#include "dynamics/flight.hpp"
+#include "dynamics/urdf.hpp"
+
+namespace codesign {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+DesignResult evaluate(const std::vector<fem::PartCase>& parts, const std::string& urdf,
+                      const dynamics::FlightSettings& flight) {
+  DesignResult result;
+  Clock::time_point start = Clock::now();
+  for (const fem::PartCase& part : parts) result.parts.push_back(fem::analyse_part(part));
+  result.fem_seconds = seconds_since(start);
+  start = Clock::now();
+  dynamics::UrdfOptions options;
+  options.joints = flight.joints;
+  const dynamics::Model model = dynamics::load_urdf(urdf, options);
+  result.flight = dynamics::simulate_flight(model, flight);
+  result.flight_seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace codesign
