@@ -127,7 +127,7 @@ def convex_pieces(points: Matrix, triangles: NDArray[Any], count: int) -> list[M
 
     points (n, 3), triangles (m, 3): closed surface. Raises: MeshError if it is not closed.
     """
-    vertices, corners = np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.uint64)
+    vertices, corners = np.array(points, dtype=np.float64), np.array(triangles, dtype=np.uint64)
     body = manifold3d.Manifold(manifold3d.Mesh64(vert_properties=vertices, tri_verts=corners))
     if body.status() != manifold3d.Error.NoError or body.is_empty():
         raise MeshError(f"no convex pieces: the surface is not closed ({body.status().name})")
