@@ -16,9 +16,9 @@ struct DesignResult {
   double flight_seconds = 0.0;  // wall clock, loading the robot included
 };
 
-// The native half of the chain in one call: meshes and solves every part, loads the robot, flies it.
-// The parts of a design that is cached are left out of `parts`.
-// Throws MeshError, SolverError, UrdfError; std::invalid_argument where inputs do not fit together.
+// The native half of the chain in one call: meshes and solves every part, loads the robot, flies
+// it. The parts of a design that is cached are left out of `parts`. Throws MeshError, SolverError,
+// UrdfError; std::invalid_argument where inputs do not fit together.
 DesignResult evaluate(const std::vector<fem::PartCase>& parts, const std::string& urdf,
                       const dynamics::FlightSettings& flight);
 

@@ -163,6 +163,9 @@ std::vector<int> loaded_triangles(const TetMesh& mesh, const std::vector<Load>& 
   for (const Load& load : loads) {
     const Selection* where = std::visit(
         [](const auto& l) -> const Selection* {
+          // A load on a region fades inside its faces: their border is no border of the load.
+          if constexpr (requires { l.region; })
+            if (l.region) return nullptr;
           if constexpr (requires { l.where; }) return &l.where;
           return nullptr;
         },

@@ -63,15 +63,39 @@ def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
         direction = -normals[on_face].sum(axis=0)
         force = load.force * direction / np.linalg.norm(direction)
         loads.append(_core.fem.Force(_core.fem.Selection(faces=[load.face]), force))
+    return native_case(settings, surface, fem.SizeField(edge_length), [clamp(*settings.supports)], loads)
+
+
+def clamp(*faces: str) -> _core.fem.Support:
+    """Named faces fixed in all directions."""
+    return _core.fem.Support(_core.fem.Selection(faces=list(faces)))
+
+
+def native_case(
+    settings: StressSettings,
+    surface: fem.SurfaceMesh,
+    size: fem.SizeField,
+    supports: Sequence[_core.fem.Support],
+    loads: Sequence[_core.fem.Force | _core.fem.AffineTraction],
+    *,
+    copies: int = 1,
+    facet_angle_deg: float = 25.0,
+) -> _core.PartCase:
+    """What `codesign._core.evaluate` meshes and solves.
+
+    copies: 2 for one half of a symmetric part; work and stress_50 then refer to the whole part.
+    """
     static = _core.fem.StaticSettings()
     static.exclusion_distance = settings.exclusion_distance
+    static.copies = copies
     return _core.PartCase(
         surface=surface,
-        size=fem.SizeField(edge_length),
+        size=size,
         material=settings.material,
-        supports=[_core.fem.Support(_core.fem.Selection(faces=list(settings.supports)))],
-        loads=loads,
+        supports=list(supports),
+        loads=list(loads),
         settings=static,
+        facet_angle_deg=facet_angle_deg,
     )
 
 

@@ -10,6 +10,9 @@ from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
+from codesign import _core, fem
+from codesign.analysis import StressSettings, clamp, native_case
+from codesign.errors import GeometryError
 from codesign.geometry.part import Part, parameter
 from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, box, cylinder, polar, stepped_hole, union
@@ -19,6 +22,7 @@ BASE = 15.0  # thickness of the base; the slab's is a field, see `thickness`
 HALF_WIDTH = 30.0
 LOWER_CREASE = 25.0  # x of the crease on the lower faces
 SEAT_RADIUS, SEAT_DEPTH = 23.0, 1.0
+SEAT_HOLE_RADIUS = 1.6
 SEAT_HOLES = polar(19.7, 10.0, -10.0, 110.0, -110.0, 130.0, -130.0)
 SCREWS = [(4.0, 10.0), (4.0, -10.0)]
 COUNTERBORE_RADIUS, COUNTERBORE_DEPTH = 3.0, 3.4  # of the seat's holes, from the upper face
@@ -143,7 +147,7 @@ class JetpackBracket(Part):
         """Pocket in the lower face and six counterbored holes around its centre."""
         top = self.thickness
         shoulder = top - COUNTERBORE_DEPTH
-        hole = stepped_hole((1.6, 0.0, shoulder), (COUNTERBORE_RADIUS, shoulder, top + 1.0))
+        hole = stepped_hole((SEAT_HOLE_RADIUS, 0.0, shoulder), (COUNTERBORE_RADIUS, shoulder, top + 1.0))
         pocket = cylinder(SEAT_RADIUS, -1.0, SEAT_DEPTH, end_face="seat")
         return [tool.placed(self._seat_frame) for tool in (pocket, at_points(hole, SEAT_HOLES))]
 
@@ -190,3 +194,47 @@ class JetpackBracket(Part):
         return self.seat_centre + TURBINE_REACH * MILLIMETRE * self.slab_direction
 
     half_width = HALF_WIDTH * MILLIMETRE
+
+    def stress_case(self, settings: StressSettings) -> _core.PartCase:
+        """The half y >= 0, finest along both creases, where the stress is largest.
+
+        The load is a traction over the seat's disc, affine so that force and moment are exact; its centre is that of
+        the pocket's floor, or the turbine's axis (`load = "thrust_line"`).
+        """
+        if settings.load not in ("uniform", "thrust_line"):
+            raise GeometryError(f"{self.name}: load = {settings.load!r}: there are uniform and thrust_line")
+        supports = list(settings.supports) if settings.support == "published" else ["pad", "screw_seat"]
+        surface = self.fem_surface(settings.geometry, support=settings.support)
+        floor = math.pi * SEAT_RADIUS**2 / 2.0 - len(SEAT_HOLES) / 2.0 * math.pi * SEAT_HOLE_RADIUS**2
+        moment = 2.0 / 3.0 * SEAT_RADIUS**3 - sum(y * math.pi * SEAT_HOLE_RADIUS**2 for _, y in SEAT_HOLES if y > 0.0)
+        aside = np.array([0.0, moment / floor, 0.0]) * MILLIMETRE  # centroid of half of the floor
+        centre = self.turbine_axis if settings.load == "thrust_line" else self.seat_centre
+        (load,) = settings.loads
+        whole = settings.geometry == "full"
+        traction = _core.fem.AffineTraction(
+            _core.fem.Selection(faces=[load.face]),
+            0.5 * load.force * self.slab_normal,
+            centre + aside,
+            np.zeros(3),
+            None if whole else _core.fem.Disc(self.seat_centre, self.slab_normal, self.seat_radius),
+        )
+        symmetry = _core.fem.Support(
+            _core.fem.Selection(faces=["symmetry"]), [False, True, False], np.zeros((0, 3)), True
+        )
+        return native_case(
+            settings, surface, self._size_field(settings), [clamp(*supports), symmetry], [traction], copies=2
+        )
+
+    def _size_field(self, settings: StressSettings) -> fem.SizeField:
+        """Fine along lines 2 mm behind each crease, on the side away from the clamp."""
+        fine = settings.accuracy == "fine"
+        base, size, growth, radius = (8.0, 0.5, 0.35, 2.0) if fine else (12.0, 0.8, 0.5, 1.5)
+        across = np.array([0.0, self.half_width, 0.0])
+        behind = 2.0 * MILLIMETRE * self.slab_direction
+        sources = [
+            fem.SizeSource(
+                np.array([crease + behind, crease + behind + across]), size * MILLIMETRE, growth, radius * MILLIMETRE
+            )
+            for crease in (self.lower_crease, self.upper_crease)
+        ]
+        return fem.SizeField(base * MILLIMETRE, sources)

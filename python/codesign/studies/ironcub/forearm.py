@@ -11,6 +11,9 @@ from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
+from codesign import _core, fem
+from codesign.analysis import StressSettings, clamp, native_case
+from codesign.errors import GeometryError
 from codesign.geometry.part import Part, parameter
 from codesign.geometry.profile import Path, Profile, Vector, circle
 from codesign.geometry.shape import (
@@ -207,3 +210,43 @@ class ForearmJetSupport(Part):
         return np.array(start) * MILLIMETRE, np.array(end) * MILLIMETRE
 
     rod_radius = ROD_RADIUS * MILLIMETRE
+
+    def stress_case(self, settings: StressSettings) -> _core.PartCase:
+        """The whole part, finest in the fillets at the rod's ends on the side of the ring, where the stress is largest.
+
+        The load is a traction over the distal face, affine so that its resultant passes exactly through the centroid of
+        the true face (which the spigot interrupts), or through the turbine's axis (`load = "thrust_line"`).
+        """
+        if settings.load not in ("uniform", "thrust_line"):
+            raise GeometryError(f"{self.name}: load = {settings.load!r}: there are uniform and thrust_line")
+        (load,) = settings.loads
+        traction = _core.fem.AffineTraction(
+            _core.fem.Selection(faces=[load.face]),
+            load.force * np.array([1.0, 0.0, 0.0]),
+            self.turbine_axis if settings.load == "thrust_line" else self.seat_centroid,
+            np.zeros(3),
+            None,
+        )
+        return native_case(
+            settings,
+            self.fem_surface(settings.geometry),
+            self._size_field(settings),
+            [clamp(*settings.supports)],
+            [traction],
+            facet_angle_deg=20.0,
+        )
+
+    def _size_field(self, settings: StressSettings) -> fem.SizeField:
+        """Arcs inside the fillets at both ends of the rod, and the rod itself."""
+        fine = settings.accuracy == "fine"
+        base, fillet, growth, rod = (8.0, 0.35, 0.35, 4.0) if fine else (12.0, 0.5, 0.5, 5.0)
+        start, end = self.rod_ends
+        turn = np.radians(np.linspace(-20.0, 20.0, 9))
+        arc = (self.rod_radius + 0.4 * MILLIMETRE) * np.column_stack([0.0 * turn, np.sin(turn), -np.cos(turn)])
+        inside = np.array([0.8 * MILLIMETRE, 0.0, 0.0])
+        sources = [
+            fem.SizeSource(centre + arc, fillet * MILLIMETRE, growth, 0.6 * MILLIMETRE)
+            for centre in (start - inside, end + inside)
+        ]
+        sources.append(fem.SizeSource(np.array([start, end]), rod * MILLIMETRE, growth, self.rod_radius))
+        return fem.SizeField(base * MILLIMETRE, sources)
