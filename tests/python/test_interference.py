@@ -19,6 +19,7 @@ from codesign.interference import (
     convex_pieces,
     flown_interference,
     hull_vertices,
+    link_pieces,
     range_postures,
     telling_samples,
 )
@@ -269,6 +270,30 @@ def test_the_shipped_robot_with_real_parts_is_left_right_symmetric():
     for found in report.clearances:
         twin = clearance(report, *(f"{swap[name[0]]}{name[1:]}" for name in (found.first, found.second)))
         assert twin.distance == pytest.approx(found.distance, abs=1e-3)  # the robot's own sides differ by 0.3 mm
+
+
+def test_culling_changes_no_result():
+    robot = RobotDescription.load(Path(ironcub.__file__).with_name("robot.urdf"))
+    joints = ["torso_yaw", "l_shoulder_pitch", "l_shoulder_roll", "l_shoulder_yaw", "l_elbow"]
+    postures = range_postures(dict.fromkeys(joints, (-0.5, 0.7)), 16)
+    settings = InterferenceSettings(bodies=("l_arm_jet_turbine",), report_below_mm=300)
+    report = check_interference(robot, settings, postures)
+    pieces, poses = link_pieces(robot, {}), robot.frame_poses(postures)
+    count = len(postures["l_elbow"])
+    reported = 0
+    for link in pieces:
+        if link in ("l_arm_jet_turbine", "l_forearm"):
+            continue
+        turbine_T_link = np.linalg.inv(poses["l_arm_jet_turbine"]) @ poses[link]
+        hulls = [*pieces["l_arm_jet_turbine"], *pieces[link]]
+        first = len(pieces["l_arm_jet_turbine"])
+        pairs = [(i, j, k) for i in range(first) for j in range(first, len(hulls)) for k in range(count)]
+        i, j, k = np.array(pairs).T
+        nearest = hull_distances(hulls, i, j, turbine_T_link[k]).min()
+        if nearest < 0.3:
+            assert clearance(report, "l_arm_jet_turbine", link).distance == pytest.approx(nearest, abs=1e-9)
+            reported += 1
+    assert reported == len(report.clearances) > 10
 
 
 def test_a_long_rod_keeps_the_turbine_off_the_upper_arm_and_a_short_one_does_not():
