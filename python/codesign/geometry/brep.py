@@ -25,7 +25,7 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_
 from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Wire
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 
 from codesign.errors import GeometryError
 from codesign.geometry.profile import FULL_TURN, Loop
@@ -186,12 +186,3 @@ def _wire(loop: Loop, frame: Frame) -> tuple[TopoDS_Wire, list[TopoDS_Edge]]:
     for made in edges:
         maker.Add(made)
     return maker.Wire(), edges
-
-
-def is_analytic(face: TopoDS_Face) -> bool:
-    """Whether a face lies on a plane, cylinder, cone, sphere or torus."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
-
-    analytic = (Kind.GeomAbs_Plane, Kind.GeomAbs_Cylinder, Kind.GeomAbs_Cone, Kind.GeomAbs_Sphere, Kind.GeomAbs_Torus)
-    return BRepAdaptor_Surface(face).GetType() in analytic
