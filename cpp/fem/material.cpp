@@ -39,6 +39,12 @@ Voigt stress_of_strain(double lambda, double mu, const Voigt& strain) {
   return s;
 }
 
+Voigt stress_of_gradient(double lambda, double mu, const Eigen::Matrix3d& h) {
+  Voigt strain;
+  strain << h(0, 0), h(1, 1), h(2, 2), h(0, 1) + h(1, 0), h(1, 2) + h(2, 1), h(2, 0) + h(0, 2);
+  return stress_of_strain(lambda, mu, strain);
+}
+
 double von_mises(const Voigt& s) {
   const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
   return std::sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));

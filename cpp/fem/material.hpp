@@ -26,6 +26,9 @@ double shear_modulus(const Material& material);  // Pa
 // Stress of a strain, Pa.
 Voigt stress_of_strain(double lambda, double mu, const Voigt& strain);
 
+// Stress of a displacement gradient, entry (i, j) = d u_i / d x_j, Pa.
+Voigt stress_of_gradient(double lambda, double mu, const Eigen::Matrix3d& gradient);
+
 double von_mises(const Voigt& stress);
 
 }  // namespace codesign::fem

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 #include "errors.hpp"
+#include "fem/incidence.hpp"
 #include "fem/tet10.hpp"
 
 namespace codesign::fem {
@@ -18,26 +18,6 @@ namespace {
 constexpr int kDissectionVertices = 3000;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-// Elements of each node, as compressed rows.
-struct Incidence {
-  std::vector<int> start, element;
-};
-
-Incidence incidence(const TetMesh& mesh, int corners) {
-  Incidence result;
-  result.start.assign(at(static_cast<int>(mesh.nodes.rows())) + 1, 0);
-  for (int e = 0; e < mesh.tets.rows(); ++e) {
-    for (int i = 0; i < corners; ++i) ++result.start[at(mesh.tets(e, i)) + 1];
-  }
-  std::partial_sum(result.start.begin(), result.start.end(), result.start.begin());
-  result.element.resize(at(result.start.back()));
-  std::vector<int> next(result.start.begin(), result.start.end() - 1);
-  for (int e = 0; e < mesh.tets.rows(); ++e) {
-    for (int i = 0; i < corners; ++i) result.element[at(next[at(mesh.tets(e, i))]++)] = e;
-  }
-  return result;
-}
 
 bool has_free_component(const Constraints& c, int node) {
   const std::size_t d = 3 * at(node);
@@ -71,7 +51,7 @@ std::vector<int> order_graph(std::vector<int>& start, std::vector<int>& column, 
 // Rank of each free corner vertex in a fill-reducing order of the vertex graph; -1 for others.
 std::vector<int> vertex_ranks(const TetMesh& mesh, const Constraints& constraints,
                               VertexOrdering method) {
-  const Incidence elements = incidence(mesh, 4);
+  const Incidence elements = elements_of_nodes(mesh, 4);
   const int nodes = static_cast<int>(mesh.nodes.rows());
   std::vector<int> index(at(nodes), -1), vertex;
   for (int v = 0; v < nodes; ++v) {
@@ -184,7 +164,7 @@ void find_neighbors(const TetMesh& mesh, const Incidence& elements, NodePattern&
 NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
                         VertexOrdering method) {
   const std::vector<int> key = node_keys(mesh, vertex_ranks(mesh, constraints, method));
-  const Incidence elements = incidence(mesh, kTetNodes);
+  const Incidence elements = elements_of_nodes(mesh, kTetNodes);
   NodePattern pattern;
   for (int v = 0; v < mesh.nodes.rows(); ++v) {
     if (has_free_component(constraints, v)) pattern.order.push_back(v);

@@ -9,6 +9,7 @@
 #include "errors.hpp"
 #include "fem/cholesky.hpp"
 #include "fem/ordering.hpp"
+#include "fem/recovery.hpp"
 #include "fem/rigid_motions.hpp"
 #include "fem/stiffness.hpp"
 

@@ -20,9 +20,6 @@ struct PointStresses {
 PointStresses point_stresses(const TetMesh& mesh, const Material& material,
                              const Eigen::VectorXd& displacement);
 
-// Continuous stress at the nodes, recovered from the point stresses.
-Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);
-
 Eigen::VectorXd von_mises(const Stresses& stress);
 
 // The von Mises stress exceeded in the given volume (m³); the smallest one if there is less

@@ -1,0 +1,212 @@
+#include "fem/recovery.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fem/incidence.hpp"
+#include "fem/tet10.hpp"
+
+namespace codesign::fem {
+
+namespace {
+
+constexpr std::size_t kMinPatch = 10;  // elements
+// Weight of a point at distance r (over the patch radius): (r² + kCore)^-2.
+constexpr double kCore = 0.01;
+// Holds the quadratic terms where a patch does not determine them.
+constexpr double kRidge = 1e-10;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+using Basis = Eigen::Matrix<double, 10, 1>;
+using Coefficients = Eigen::Matrix<double, 10, 6>;
+
+Basis quadratic_basis(const Eigen::Vector3d& r) {
+  Basis p;
+  p << 1.0, r[0], r[1], r[2], r[0] * r[0], r[1] * r[1], r[2] * r[2], r[0] * r[1], r[1] * r[2],
+      r[2] * r[0];
+  return p;
+}
+
+Points stress_points(const TetMesh& mesh) {
+  Eigen::Matrix<double, kTetNodes, 4> values;
+  for (int q = 0; q < 4; ++q) values.col(q) = tet10_values(tet_rule_4().points[at(q)]);
+  Points x(4 * mesh.tets.rows(), 3);
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    x.middleRows<4>(4 * e) = (tet_nodes(mesh, e) * values).transpose();
+  }
+  return x;
+}
+
+bool share_side(const TetMesh& mesh, int a, int b) {
+  int common = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) common += mesh.tets(a, i) == mesh.tets(b, j);
+  }
+  return common >= 3;
+}
+
+// Collects the elements around a corner node, and their neighbours through sides as long as they
+// are fewer than ten.
+class PatchFinder {
+ public:
+  explicit PatchFinder(const TetMesh& mesh)
+      : mesh_(mesh),
+        incidence_(elements_of_nodes(mesh, 4)),
+        seen_(at(static_cast<int>(mesh.tets.rows())), -1) {}
+
+  bool is_corner(int node) const {
+    return incidence_.start[at(node)] < incidence_.start[at(node) + 1];
+  }
+
+  const std::vector<int>& around(int node) {
+    patch_.clear();
+    for (int j = incidence_.start[at(node)]; j < incidence_.start[at(node) + 1]; ++j) {
+      add(node, incidence_.element[at(j)]);
+    }
+    core_ = patch_.size();
+    for (std::size_t i = 0; i < patch_.size() && patch_.size() < kMinPatch;) {
+      const std::size_t ring = patch_.size();
+      for (; i < ring; ++i) add_neighbours(node, patch_[i]);
+    }
+    return patch_;
+  }
+
+  std::size_t core() const { return core_; }  // of these the first ones touch the node
+
+ private:
+  void add(int node, int element) {
+    if (seen_[at(element)] == node) return;
+    seen_[at(element)] = node;
+    patch_.push_back(element);
+  }
+
+  void add_neighbours(int node, int element) {
+    for (int k = 0; k < 4; ++k) {
+      const int corner = mesh_.tets(element, k);
+      for (int j = incidence_.start[at(corner)]; j < incidence_.start[at(corner) + 1]; ++j) {
+        const int other = incidence_.element[at(j)];
+        if (seen_[at(other)] != node && share_side(mesh_, element, other)) add(node, other);
+      }
+    }
+  }
+
+  const TetMesh& mesh_;
+  Incidence incidence_;
+  std::vector<int> seen_, patch_;
+  std::size_t core_ = 0;
+};
+
+// Weighted least-squares fit around the origin, coordinates divided by the radius.
+Coefficients fit(const std::vector<int>& patch, const Points& x, const Stresses& stress,
+                 const Eigen::Vector3d& origin, double radius) {
+  Eigen::Matrix<double, 10, 10> normal = Eigen::Matrix<double, 10, 10>::Zero();
+  Coefficients right = Coefficients::Zero();
+  double total = 0.0;
+  for (const int e : patch) {
+    for (int q = 4 * e; q < 4 * e + 4; ++q) {
+      const Eigen::Vector3d r = (x.row(q).transpose() - origin) / radius;
+      const double near = 1.0 / (r.squaredNorm() + kCore);
+      const double weight = near * near;
+      const Basis p = quadratic_basis(r);
+      const Basis wp = weight * p;
+      total += weight;
+      normal.noalias() += wp * p.transpose();
+      right.noalias() += wp * stress.row(q);
+    }
+  }
+  if (patch.size() < kMinPatch) {  // a mesh of a few elements: the quadratic terms stay zero
+    Coefficients linear = Coefficients::Zero();
+    linear.topRows<4>() = normal.topLeftCorner<4, 4>().ldlt().solve(right.topRows<4>());
+    return linear;
+  }
+  normal.diagonal().segment<3>(4).array() += kRidge * total;
+  normal.diagonal().tail<3>().array() += 0.5 * kRidge * total;  // the same in turned axes
+  return normal.ldlt().solve(right);
+}
+
+}  // namespace
+
+Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
+  const Points x = stress_points(mesh);
+  PatchFinder finder(mesh);
+  const int nodes = static_cast<int>(mesh.nodes.rows());
+  Stresses sum = Stresses::Zero(nodes, 6);
+  std::vector<int> count(at(nodes), 0), seen_from(at(nodes), -1);
+  for (int v = 0; v < nodes; ++v) {
+    if (!finder.is_corner(v)) continue;
+    const std::vector<int>& patch = finder.around(v);
+    const Eigen::Vector3d origin = mesh.nodes.row(v).transpose();
+    double radius = 0.0;
+    for (const int e : patch) {
+      for (int i = 0; i < 4; ++i) {
+        radius = std::max(radius, (mesh.nodes.row(mesh.tets(e, i)).transpose() - origin).norm());
+      }
+    }
+    const Coefficients polynomial = fit(patch, x, points.stress, origin, radius);
+    sum.row(v) += polynomial.row(0);
+    ++count[at(v)];
+    for (std::size_t i = 0; i < finder.core(); ++i) {
+      for (int k = 0; k < 6; ++k) {
+        const int e = patch[i], middle = mesh.tets(e, 4 + k);
+        const bool on_edge =
+            mesh.tets(e, kTetEdges[k][0]) == v || mesh.tets(e, kTetEdges[k][1]) == v;
+        if (!on_edge || seen_from[at(middle)] == v) continue;
+        seen_from[at(middle)] = v;
+        const Eigen::Vector3d r = (mesh.nodes.row(middle).transpose() - origin) / radius;
+        sum.row(middle).noalias() += quadratic_basis(r).transpose() * polynomial;
+        ++count[at(middle)];
+      }
+    }
+  }
+  for (int n = 0; n < nodes; ++n) {
+    if (count[at(n)] > 1) sum.row(n) /= count[at(n)];
+  }
+  return sum;
+}
+
+RecoveryError recovery_error(const TetMesh& mesh, const Material& material,
+                             const Eigen::VectorXd& displacement, const Stresses& recovered) {
+  const double lambda = lame_lambda(material), mu = shear_modulus(material);
+  const double young = material.young_modulus, nu = material.poisson_ratio;
+  // Twice the energy density of a stress.
+  const auto energy = [&](const Voigt& s) {
+    const double trace = s[0] + s[1] + s[2];
+    return ((1 + nu) * (s.head<3>().squaredNorm() + 2.0 * s.tail<3>().squaredNorm()) -
+            nu * trace * trace) /
+           young;
+  };
+  const TetRule& rule = tet_rule_14();
+  std::vector<TetValues> values;
+  for (const Eigen::Vector3d& p : rule.points) values.push_back(tet10_values(p));
+  RecoveryError error;
+  error.element.resize(mesh.tets.rows());
+  double difference_energy = 0.0, total_energy = 0.0;
+  TetPoints points;
+  TetNodes u;
+  Eigen::Matrix<double, kTetNodes, 6> nodal;
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    evaluate_tet(tet_nodes(mesh, e), rule, points);
+    for (int i = 0; i < kTetNodes; ++i) {
+      u.col(i) = displacement.segment<3>(3 * mesh.tets(e, i));
+      nodal.row(i) = recovered.row(mesh.tets(e, i));
+    }
+    double volume = 0.0, square = 0.0;
+    for (int q = 0; q < points.count; ++q) {
+      const Voigt smooth = nodal.transpose() * values[at(q)];
+      const Voigt raw = stress_of_gradient(lambda, mu, u * points.gradients[at(q)].transpose());
+      const double mises = von_mises(Voigt(smooth - raw)), weight = points.weights[at(q)];
+      volume += weight;
+      square += weight * mises * mises;
+      difference_energy += weight * energy(smooth - raw);
+      total_energy += weight * energy(smooth);
+    }
+    error.element[e] = std::sqrt(std::max(0.0, square / volume));
+  }
+  if (total_energy > 0) error.relative_energy = std::sqrt(difference_energy / total_energy);
+  return error;
+}
+
+}  // namespace codesign::fem
