@@ -9,7 +9,8 @@ namespace codesign::fem {
 
 // Delaunay refinement of the solid inside the surface; sides are labelled by patch. Throws
 // MeshError on the limits of `options` and if the refinement breaks down.
-LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches, const SizeField& size,
+LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
+                         const std::vector<FeatureLine>& lines, const SizeField& size,
                          const MeshOptions& options);
 
 }  // namespace codesign::fem

@@ -10,7 +10,6 @@
 
 #include "errors.hpp"
 #include "fem/stl.hpp"
-#include "fem/surface_features.hpp"
 
 namespace codesign::fem {
 namespace {
@@ -84,7 +83,6 @@ SurfaceReport check_surface(const SurfaceMesh& surface) {
   check_edges(surface);
 
   SurfaceReport report{};
-  report.shells = count_shells(triangle_neighbours(surface.triangles));
   report.volume = enclosed_volume(surface);
   report.shortest_edge = report.smallest_height = std::numeric_limits<double>::infinity();
   for (Eigen::Index t = 0; t < count; ++t) {

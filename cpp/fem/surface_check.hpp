@@ -9,7 +9,6 @@ namespace codesign::fem {
 
 // What a surface is like; lengths in metres.
 struct SurfaceReport {
-  int shells;                // separate closed pieces
   double volume, area;       // m³, m²
   double shortest_edge;      // m
   double smallest_height;    // of any triangle, m

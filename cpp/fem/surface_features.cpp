@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -85,6 +86,8 @@ Patches find_patches(const SurfaceMesh& surface, double feature_angle) {
   };
   int count = 0;
   std::tie(patches.of_triangle, count) = connected_groups(patches.neighbours, smooth);
+  std::tie(patches.shell, patches.shells) =
+      connected_groups(patches.neighbours, [](std::size_t, int) { return true; });
   patches.face.assign(static_cast<std::size_t>(count), 0);
   for (std::size_t t = 0; t < patches.of_triangle.size(); ++t)
     patches.face[static_cast<std::size_t>(patches.of_triangle[t])] = surface.face[t];
@@ -142,8 +145,7 @@ std::vector<FeatureLine> find_feature_lines(const SurfaceMesh& surface, const Pa
   std::vector<FeatureLine> lines;
   std::vector<bool> used(edges.size(), false);
   const auto walk = [&](int start, int e) {
-    const auto [p, q] = edges[static_cast<std::size_t>(e)].patches;
-    FeatureLine line{{start}, {p, q}};
+    FeatureLine line{{start}, is_corner(start)};
     for (int at = start; !used[static_cast<std::size_t>(e)];) {
       used[static_cast<std::size_t>(e)] = true;
       at = far_end(e, at);
@@ -168,10 +170,6 @@ void label_by_angle(SurfaceMesh& surface, double feature_angle) {
   const Patches patches = find_patches(surface, feature_angle);
   surface.face = patches.of_triangle;
   surface.face_names.assign(patches.face.size(), "");
-}
-
-int count_shells(const Neighbours& neighbours) {
-  return connected_groups(neighbours, [](std::size_t, int) { return true; }).second;
 }
 
 }  // namespace codesign::fem

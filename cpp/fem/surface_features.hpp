@@ -17,6 +17,8 @@ Neighbours triangle_neighbours(const Triangles& triangles);
 struct Patches {
   std::vector<int> of_triangle;  // (m) patch of each triangle, 0-based
   std::vector<int> face;         // (patches) the face each patch belongs to
+  std::vector<int> shell;        // (m) separate closed piece of the surface, 0-based
+  int shells;
   Neighbours neighbours;
 };
 Patches find_patches(const SurfaceMesh& surface, double feature_angle);
@@ -24,16 +26,13 @@ Patches find_patches(const SurfaceMesh& surface, double feature_angle);
 // The lines between patches, cut into polylines at points where three or more lines meet, where the
 // pair of patches beside the line changes, and where the line itself turns by more than 45 degrees.
 struct FeatureLine {
-  std::vector<int> points;   // indices; first == last on a closed line
-  std::vector<int> patches;  // patches beside it, ascending
+  std::vector<int> points;  // indices; first == last on a closed line
+  bool starts_at_corner;    // false only for closed lines without any corner
 };
 std::vector<FeatureLine> find_feature_lines(const SurfaceMesh& surface, const Patches& patches);
 
 // Replaces the faces by unnamed ones, one for each piece that is bounded by edges sharper than
 // `feature_angle` [rad].
 void label_by_angle(SurfaceMesh& surface, double feature_angle);
-
-// Number of separate closed shells (connected through edges).
-int count_shells(const Neighbours& neighbours);
 
 }  // namespace codesign::fem

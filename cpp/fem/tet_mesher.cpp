@@ -68,7 +68,8 @@ TetMesh tetrahedralize(const SurfaceMesh& surface, const SizeField& size,
   check_surface(surface);
   if (options.check_intersections) check_self_intersection(surface);
   const Patches patches = find_patches(surface, options.feature_angle);
-  LinearTets tets = delaunay_mesh(surface, patches, size, options);
+  const std::vector<FeatureLine> lines = find_feature_lines(surface, patches);
+  LinearTets tets = delaunay_mesh(surface, patches, lines, size, options);
   if (tets.tets.empty()) throw MeshError("the mesh is empty");
   const int crumbs = remove_crumbs(tets, kCrumb);
   for (std::array<int, 4>& labels : tets.side_label)

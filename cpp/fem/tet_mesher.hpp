@@ -17,6 +17,7 @@ struct MeshOptions {
   double radius_edge = 2.5;               // largest circumradius / shortest edge of a tetrahedron
   double sliver_angle = 6.0 * kDegree;    // elements flatter than this are improved, rad; 0: none
   double flat_angle = 6.0 * kDegree;      // boundary elements flatter than this are peeled, rad
+  bool nonlinear_balls = false;           // sizes along a line follow the size field more closely
   double time_limit = 60.0;               // processor time of this thread, s
   std::size_t max_vertices = 400'000;     // corner nodes
   bool check_intersections = true;        // look for triangles that cross each other first
