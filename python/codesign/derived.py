@@ -19,7 +19,7 @@ from codesign.worker import load
 
 @dataclass(frozen=True)
 class DerivedStudy:
-    """A study with something changed: a subclass says what by `changes` (JSON values), and by `loader` how to load it."""
+    """A study with something changed: `changes` (JSON values) says what, `loader` how to load it again."""
 
     study: Problem
 

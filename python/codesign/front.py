@@ -74,15 +74,13 @@ class FrontTracker:
         self._names = tuple(names)
         self._front = np.empty((0, len(self._names)))
         self._hypervolume: Hypervolume | None = None
-        self.value: float | None = None
 
-    def add(self, evaluations: Iterable[Evaluation]) -> None:
-        """Takes new evaluations into account."""
+    def add(self, evaluations: Iterable[Evaluation]) -> float | None:
+        """Takes a batch of new evaluations into account; returns the hypervolume, None before any is feasible."""
         values = objective_rows(evaluations, self._names)
-        if not len(values):
-            return
-        if self._hypervolume is None:
-            self._hypervolume = Hypervolume(values)
-        both = np.vstack([self._front, values])
-        self._front = both[non_dominated(both)]
-        self.value = self._hypervolume.of(self._front)
+        if len(values):
+            if self._hypervolume is None:
+                self._hypervolume = Hypervolume(values)
+            both = np.vstack([self._front, values])
+            self._front = both[non_dominated(both)]
+        return None if self._hypervolume is None else self._hypervolume.of(self._front)

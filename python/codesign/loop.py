@@ -114,7 +114,7 @@ class Loop:
         self._queue: deque[int] = deque()
         self._running: set[int] = set()
         self._tracker = FrontTracker(study.objectives)
-        self._generation_told = 0
+        self._generation: list[Evaluation] = []  # told since the last generation's end
         self._history: list[float | None] = []
         self._ended: str | None = None
         self._earlier = sum(session["seconds"] for session in store.sessions())
@@ -134,7 +134,7 @@ class Loop:
                     self._hand_out(workers)
                     self._take(workers.collect(WAIT))
                     self._advance()
-            if self._told > self._generation_told:
+            if self._generation:
                 self._end_generation()
             outcome = self._ended or "budget used up"
         except KeyboardInterrupt:
@@ -183,24 +183,25 @@ class Loop:
         self._told += len(evaluations)
         for evaluation in evaluations:
             self._told_counts[evaluation.status] += 1
-        self._tracker.add(evaluations)
-        if self._told - self._generation_told >= self._schedule.first:
+        self._generation += evaluations
+        if len(self._generation) >= self._schedule.first:
             self._end_generation()
         return True
 
     def _end_generation(self) -> None:
-        self._generation_told = self._told
-        self._history.append(self._tracker.value)
+        self._history.append(self._tracker.add(self._generation))
+        self._generation = []
         numbers = {grid: number for number, grid in enumerate(self._grids)}
         population = tuple(numbers[grid] for grid in self._search.population())
         state = Generation(
             len(self._history) - 1,
             self._told,
             **self._told_counts,
-            hypervolume=self._tracker.value,
+            hypervolume=self._history[-1],
             population=population,
         )
         self._store.add_generation(state)
+        self._store.checkpoint()
 
     def _ask(self) -> bool:
         asked = len(self._grids)
@@ -302,7 +303,7 @@ class Loop:
             cached=self._cached,
             seconds=time.monotonic() - self._began,
             generation=len(self._history),
-            hypervolume=self._tracker.value,
+            hypervolume=self._history[-1] if self._history else None,
             ended=self._ended,
         )
         self._notify(state)

@@ -153,12 +153,12 @@ def test_full_disk_stops_the_run_clearly_and_resume_goes_on(tmp_path) -> None:
     )
 
     def limit_files() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
 
     process = run_script(script, tmp_path / "run", prepare=limit_files)
     assert str(tmp_path / "run" / DATABASE) in process.stdout
     interrupted = load_run(tmp_path / "run")
-    assert 8 <= len(interrupted.records) < 96
+    assert 0 < len(interrupted.records) < 96
     run = resume(tmp_path / "run")
     assert [r.identity() for r in run.records] == [r.identity() for r in whole.records]
 
