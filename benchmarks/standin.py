@@ -93,7 +93,7 @@ class StandIn:
         sigma = math.sqrt(math.log(1 + self.spread**2))
         return float(self.seconds * math.exp(sigma * normal - 0.5 * sigma**2))
 
-    def evaluate(self, design: Mapping[str, float], /, trajectory: str | None = None, cache: Any = None) -> Evaluation:
+    def evaluate(self, design: Mapping[str, float], /, **_: Any) -> Evaluation:
         """Sleeps, then gives the problem's numbers."""
         if self.seconds:
             time.sleep(self.duration(design))
