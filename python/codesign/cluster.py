@@ -7,7 +7,10 @@ in a local run and never end the Dask worker. Dask runs the tasks of a lost work
 from __future__ import annotations
 
 import importlib
+import os
 import queue
+import socket
+import tempfile
 import threading
 import time
 import uuid
@@ -33,6 +36,7 @@ class Job:
     study: StudyRef
     limits: Limits
     cache: str
+    host: str  # of the run: elsewhere the cache is a file of the worker's own machine (SQLite and NFS do not mix)
 
 
 _pools: dict[tuple[str, int], LocalPool] = {}  # on a Dask worker: (run, thread) -> its worker process
@@ -43,7 +47,7 @@ def evaluate_here(job: Job, task: Task) -> tuple[dict[str, Any], float, str]:
     key = (job.run, threading.get_ident())
     pool = _pools.get(key)
     if pool is None:
-        pool = _pools[key] = LocalPool(job.study, 1, job.limits, job.cache)
+        pool = _pools[key] = LocalPool(job.study, 1, job.limits, local_cache(job.cache, job.host))
     try:
         pool.submit(task)
         while not (outcomes := pool.collect(60.0)):
@@ -52,6 +56,13 @@ def evaluate_here(job: Job, task: Task) -> tuple[dict[str, Any], float, str]:
         _pools.pop(key, pool).close()
         raise
     return outcomes[0].evaluation.to_dict(), outcomes[0].seconds, outcomes[0].worker
+
+
+def local_cache(cache: str, host: str) -> str:
+    """The run's cache file on the run's own machine, else one of the same name in this machine's temporary folder."""
+    if not cache or socket.gethostname() == host:
+        return cache
+    return str(Path(tempfile.gettempdir()) / f"codesign-{os.getuid()}" / Path(cache).name)
 
 
 def release(run: str) -> None:
@@ -65,7 +76,7 @@ class DaskExecutor:
 
     Args:
         address: a scheduler's address (tcp://host:port), or local:N for N Dask workers on this machine.
-        cache: file of the cache on each worker's machine.
+        cache: file of the cache on this machine; workers on other machines have their own.
 
     Raises: ExecutionError if dask.distributed is missing or the scheduler cannot be reached.
     """
@@ -75,7 +86,7 @@ class DaskExecutor:
             distributed: Any = importlib.import_module("distributed")
         except ImportError as error:
             raise ExecutionError("a cluster needs dask[distributed]: pip install codesign[cluster]") from error
-        self._job = Job(uuid.uuid4().hex, study, limits, str(cache or ""))
+        self._job = Job(uuid.uuid4().hex, study, limits, str(cache or ""), socket.gethostname())
         self._arrived: queue.SimpleQueue[tuple[Task, Any]] = queue.SimpleQueue()
         self._futures: dict[int, Any] = {}
         self._attempts: dict[int, int] = {}

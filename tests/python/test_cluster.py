@@ -2,12 +2,14 @@
 
 import os
 import signal
+import socket
 import threading
 import time
 from pathlib import Path
 
 import pytest
 
+from codesign.cluster import local_cache
 from codesign.errors import ExecutionError
 from codesign.optimization import optimize
 from codesign.runs import Run
@@ -68,3 +70,12 @@ def test_unreachable_scheduler_is_a_clear_error(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr("codesign.cluster.CONNECT_LIMIT", 0.2)
     with pytest.raises(ExecutionError, match="no Dask cluster at tcp://"):
         optimize(fake(), out=tmp_path / "run", cluster="tcp://127.0.0.1:1", cache=None, generations=1)
+
+
+def test_other_machines_have_their_own_cache() -> None:
+    """A cache in a home folder on NFS must not be written from two machines."""
+    assert local_cache("/home/me/.cache/codesign/x.sqlite", socket.gethostname()) == "/home/me/.cache/codesign/x.sqlite"
+    elsewhere = local_cache("/home/me/.cache/codesign/x.sqlite", "login-node")
+    assert not elsewhere.startswith("/home")
+    assert elsewhere.endswith("/x.sqlite")
+    assert local_cache("", "login-node") == ""
