@@ -33,7 +33,9 @@ void bind_evaluate(py::module_& m) {
   py::class_<fem::PartCase>(m, "PartCase",
                             "One part and its load case; supports and loads name surface faces.")
       .def(py::init(&make_case), py::kw_only(), "surface"_a, "size"_a, "material"_a, "supports"_a,
-           "loads"_a, "settings"_a = fem::StaticSettings{}, "facet_angle_deg"_a = 25.0);
+           "loads"_a,
+           py::arg_v("settings", fem::StaticSettings{}, "codesign._core.fem.StaticSettings()"),
+           "facet_angle_deg"_a = 25.0);
   py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")
       .def_readonly("mesh", &fem::PartAnalysis::mesh)
       .def_readonly("result", &fem::PartAnalysis::result)

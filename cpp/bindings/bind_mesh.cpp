@@ -76,8 +76,7 @@ Raises:
       .def_readonly("points", &SurfaceMesh::points, "(n, 3) m")
       .def_readonly("triangles", &SurfaceMesh::triangles, "(m, 3)")
       .def_property_readonly(
-          "face",
-          [](py::object self) { return view(self.cast<const SurfaceMesh&>().face, self); },
+          "face", [](py::object self) { return view(self.cast<const SurfaceMesh&>().face, self); },
           "(m,) index into face_names")
       .def_readonly("face_names", &SurfaceMesh::face_names)
       .def("__repr__", [](const SurfaceMesh& surface) {
@@ -164,6 +163,22 @@ TetMesh make_mesh(const Points& nodes, const Tets& tets,
   return mesh;
 }
 
+void bind_quality(py::module_& m) {
+  py::class_<MeshQuality>(m, "MeshQuality", "Shape of the tetrahedra between their corners.")
+      .def_property_readonly("min_dihedral_deg",
+                             [](const MeshQuality& q) { return q.min_dihedral / kDegree; })
+      .def_property_readonly("max_dihedral_deg",
+                             [](const MeshQuality& q) { return q.max_dihedral / kDegree; })
+      .def_readonly("min_radius_ratio", &MeshQuality::min_radius_ratio,
+                    "3 inscribed / circumscribed radius; 1 regular, 0 flat")
+      .def_readonly("mean_radius_ratio", &MeshQuality::mean_radius_ratio)
+      .def_readonly("worst_tet", &MeshQuality::worst_tet, "of the smallest dihedral angle")
+      .def_readonly("below_5_degrees", &MeshQuality::below_5_degrees,
+                    "elements with a dihedral angle below 5 degrees")
+      .def_readonly("volume", &MeshQuality::volume, "m³")
+      .def_readonly("area", &MeshQuality::area, "m²");
+}
+
 void bind_tet_mesh(py::module_& m) {
   const std::map<std::string, Triangles> no_faces;
   py::class_<TetMesh>(m, "TetMesh", R"(Ten-node tetrahedra with named boundary faces.
@@ -192,19 +207,6 @@ Raises:
         return py::str("TetMesh({} nodes, {} tetrahedra)")
             .format(mesh.nodes.rows(), mesh.tets.rows());
       });
-  py::class_<MeshQuality>(m, "MeshQuality", "Shape of the tetrahedra between their corners.")
-      .def_property_readonly("min_dihedral_deg",
-                             [](const MeshQuality& q) { return q.min_dihedral / kDegree; })
-      .def_property_readonly("max_dihedral_deg",
-                             [](const MeshQuality& q) { return q.max_dihedral / kDegree; })
-      .def_readonly("min_radius_ratio", &MeshQuality::min_radius_ratio,
-                    "3 inscribed / circumscribed radius; 1 regular, 0 flat")
-      .def_readonly("mean_radius_ratio", &MeshQuality::mean_radius_ratio)
-      .def_readonly("worst_tet", &MeshQuality::worst_tet, "of the smallest dihedral angle")
-      .def_readonly("below_5_degrees", &MeshQuality::below_5_degrees,
-                    "elements with a dihedral angle below 5 degrees")
-      .def_readonly("volume", &MeshQuality::volume, "m³")
-      .def_readonly("area", &MeshQuality::area, "m²");
 }
 
 TetMesh make_tets(const SurfaceMesh& surface, const std::variant<double, SizeField>& edge_length,
@@ -266,6 +268,7 @@ void bind_mesh(py::module_& m) {
   bind_surface(m);
   bind_mass_properties(m);
   bind_size_field(m);
+  bind_quality(m);
   bind_tet_mesh(m);
   bind_mesher(m);
 }

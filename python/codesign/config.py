@@ -21,7 +21,7 @@ class Section(Struct, frozen=True, forbid_unknown_fields=True):
     """Base of all sections: immutable, unknown keys are errors."""
 
 
-class VariableConfig(Section, kw_only=True):
+class VariableConfig(Section, frozen=True, kw_only=True):
     """One design variable. `sets` lists numbers of the study (dotted paths) that take the variable's value."""
 
     minimum: float = field(name="min")
@@ -32,7 +32,7 @@ class VariableConfig(Section, kw_only=True):
     sets: list[str] = []
 
 
-class MaterialConfig(Section, kw_only=True):
+class MaterialConfig(Section, frozen=True, kw_only=True):
     """Isotropic linear elastic material."""
 
     young_modulus_gpa: Positive
@@ -41,14 +41,14 @@ class MaterialConfig(Section, kw_only=True):
     density_kg_m3: Positive
 
 
-class LoadConfig(Section, kw_only=True):
+class LoadConfig(Section, frozen=True, kw_only=True):
     """A total force that presses on a named face, uniformly, against its outward normal."""
 
     face: str
     pressing_n: float
 
 
-class PartConfig(Section, kw_only=True):
+class PartConfig(Section, frozen=True, kw_only=True):
     """One parametric part: the class that shapes it, the variables it takes, its material and its places in the robot.
 
     shape: `module:Class`; the module is a file beside study.toml or any importable module.
@@ -66,13 +66,13 @@ class PartConfig(Section, kw_only=True):
     options: dict[str, float | bool | str] = {}
 
 
-class RobotConfig(Section, kw_only=True):
+class RobotConfig(Section, frozen=True, kw_only=True):
     """The robot that the parts are built into; path relative to study.toml."""
 
     urdf: str
 
 
-class FemConfig(Section, kw_only=True):
+class FemConfig(Section, frozen=True, kw_only=True):
     """How part stress is computed; see `codesign.analysis.StressSettings`."""
 
     geometry: Literal["simplified", "full"] = "simplified"
@@ -83,7 +83,7 @@ class FemConfig(Section, kw_only=True):
     tolerance: Positive = 0.05
 
 
-class InitialStateConfig(Section, kw_only=True):
+class InitialStateConfig(Section, frozen=True, kw_only=True):
     """State at the start of a flight."""
 
     base_position_m: Vector3
@@ -92,7 +92,7 @@ class InitialStateConfig(Section, kw_only=True):
     free_fall_first_step: bool = True
 
 
-class JointGroupConfig(Section, kw_only=True):
+class JointGroupConfig(Section, frozen=True, kw_only=True):
     """Joints that share controller settings; one value of each list a joint."""
 
     name: str
@@ -104,7 +104,7 @@ class JointGroupConfig(Section, kw_only=True):
     velocity_weight: NonNegative = 0.0
 
 
-class JetsConfig(Section, kw_only=True):
+class JetsConfig(Section, frozen=True, kw_only=True):
     """Frames whose minus z axis the thrust pushes along."""
 
     frames: list[str]
@@ -113,7 +113,7 @@ class JetsConfig(Section, kw_only=True):
     symmetric_pairs: list[tuple[str, str]] = []
 
 
-class CommandSpeedsConfig(Section, kw_only=True):
+class CommandSpeedsConfig(Section, frozen=True, kw_only=True):
     """How fast a command of sign 1 moves the reference."""
 
     forward_m_s: Positive
@@ -124,7 +124,7 @@ class CommandSpeedsConfig(Section, kw_only=True):
     yaw_deg_s: Positive
 
 
-class ReferencesConfig(Section, kw_only=True):
+class ReferencesConfig(Section, frozen=True, kw_only=True):
     """From commands to smooth references."""
 
     roll_range_deg: Range
@@ -135,7 +135,7 @@ class ReferencesConfig(Section, kw_only=True):
     angular_velocity_smoothing_s: Positive
 
 
-class GainsConfig(Section, kw_only=True):
+class GainsConfig(Section, frozen=True, kw_only=True):
     """Controller gains; docs/flight.md gives the control law."""
 
     linear_proportional: NonNegative
@@ -147,7 +147,7 @@ class GainsConfig(Section, kw_only=True):
     joint_proportional: NonNegative
 
 
-class WeightsConfig(Section, kw_only=True):
+class WeightsConfig(Section, frozen=True, kw_only=True):
     """Weights of the momentum and the torque QP."""
 
     momentum: NonNegative
@@ -160,7 +160,7 @@ class WeightsConfig(Section, kw_only=True):
     torque: Positive
 
 
-class LimitsConfig(Section, kw_only=True):
+class LimitsConfig(Section, frozen=True, kw_only=True):
     """Bounds of both QPs."""
 
     joint_speed_deg_s: Positive
@@ -170,7 +170,7 @@ class LimitsConfig(Section, kw_only=True):
     torque_rate_n_m_s: Positive
 
 
-class FailureConfig(Section, kw_only=True):
+class FailureConfig(Section, frozen=True, kw_only=True):
     """A flight beyond these is lost."""
 
     com_error_m: Positive
@@ -178,7 +178,7 @@ class FailureConfig(Section, kw_only=True):
     joint_speed_rad_s: Positive
 
 
-class GroundConfig(Section, kw_only=True):
+class GroundConfig(Section, frozen=True, kw_only=True):
     """Points of the robot whose height over the ground is watched."""
 
     height_m: float = 0.0
@@ -186,7 +186,7 @@ class GroundConfig(Section, kw_only=True):
     points_m: list[Vector3] = []
 
 
-class TurbineConfig(Section, kw_only=True):
+class TurbineConfig(Section, frozen=True, kw_only=True):
     """Coefficients of the second-order thrust model and of its throttle controller."""
 
     K_T: float
@@ -203,7 +203,7 @@ class TurbineConfig(Section, kw_only=True):
     max_throttle_percent: Positive
 
 
-class FlightConfig(Section, kw_only=True):
+class FlightConfig(Section, frozen=True, kw_only=True):
     """Plant, jets, controller and reference generator."""
 
     trajectory: str
@@ -223,7 +223,7 @@ class FlightConfig(Section, kw_only=True):
     turbine: TurbineConfig | None = None
 
 
-class WindowConfig(Section, kw_only=True):
+class WindowConfig(Section, frozen=True, kw_only=True):
     """A command that acts at samples strictly between two times: signs of the command speeds."""
 
     from_s: NonNegative
@@ -236,21 +236,21 @@ class WindowConfig(Section, kw_only=True):
     yaw: Sign = 0.0
 
 
-class TrajectoryConfig(Section, kw_only=True):
+class TrajectoryConfig(Section, frozen=True, kw_only=True):
     """Piloted segments; hover outside of them."""
 
     windows: list[WindowConfig]
     label: str = ""
 
 
-class ObjectivesConfig(Section, kw_only=True):
+class ObjectivesConfig(Section, frozen=True, kw_only=True):
     """Which objective family is minimised, and which of its members."""
 
     family: Literal["rms", "script", "paper"] = "rms"
     minimise: tuple[str, ...] = ("momentum", "joint_velocity", "thrust")
 
 
-class ConstraintsConfig(Section, kw_only=True):
+class ConstraintsConfig(Section, frozen=True, kw_only=True):
     """What a design must satisfy. Clearances need the section [interference]; None: reported only."""
 
     safety_factor_min: Positive = 10.0
@@ -259,13 +259,13 @@ class ConstraintsConfig(Section, kw_only=True):
     plume_clearance_min_mm: float | None = None
 
 
-class ValidationConfig(Section, kw_only=True):
+class ValidationConfig(Section, frozen=True, kw_only=True):
     """Trajectories that chosen designs are flown on afterwards."""
 
     trajectories: list[str] = []
 
 
-class OptimizerConfig(Section, kw_only=True):
+class OptimizerConfig(Section, frozen=True, kw_only=True):
     """Defaults of the search; the command line overrides them."""
 
     algorithm: str = "nsga2"
@@ -276,7 +276,7 @@ class OptimizerConfig(Section, kw_only=True):
     seed: int = 1
 
 
-class ExecutionConfig(Section, kw_only=True):
+class ExecutionConfig(Section, frozen=True, kw_only=True):
     """Worker processes and their limits."""
 
     workers: Annotated[int, Meta(ge=1)] = 2
@@ -284,7 +284,7 @@ class ExecutionConfig(Section, kw_only=True):
     memory_limit_mib: Annotated[int, Meta(ge=64)] = 2048
 
 
-class StudyConfig(Section, kw_only=True):
+class StudyConfig(Section, frozen=True, kw_only=True):
     """The whole file."""
 
     name: str

@@ -1,4 +1,4 @@
-"""All files of one design: for the workshop (STL, STEP), for simulators (URDF with meshes), for the analyst (VTU, JSON)."""
+"""All files of one design: for the workshop (STL, STEP), for simulators (URDF), for the analyst (VTU, JSON)."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 def export_design(study: Study, theta: Mapping[str, float], out: str | Path) -> list[Path]:
     """Evaluates a design and writes its files into a folder (made if absent); returns their paths.
 
-    `evaluation.json`: all numbers. `cad/`: STL and STEP of each part and its mirror image, 3MF, GLB and STEP assembly of
-    all of them in their places on the robot. `robot/`: URDF with meshes. `stress/`: VTU of each part.
+    `evaluation.json`: all numbers. `cad/`: STL and STEP of each part and its mirror image, 3MF; GLB and STEP assembly
+    of all of them in their places on the robot. `robot/`: URDF with meshes. `stress/`: VTU of each part.
     Raises: DesignError, CodesignError of the chain.
     """
     out = Path(out)
@@ -49,9 +49,7 @@ def export_design(study: Study, theta: Mapping[str, float], out: str | Path) -> 
     return files
 
 
-def placed_components(
-    study: Study, design: Design, parts: Mapping[str, Part]
-) -> list[tuple[Component, str]]:
+def placed_components(study: Study, design: Design, parts: Mapping[str, Part]) -> list[tuple[Component, str]]:
     """Every part in its places on the robot, all joints at zero, and the link that it is."""
     poses = build_robot(study, design).frame_poses()
     components = []

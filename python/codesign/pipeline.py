@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -96,14 +96,13 @@ def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartC
 def build_parts(study: Study, design: Mapping[str, float], config: StudyConfig | None = None) -> dict[str, Part]:
     """Parts of a design by name."""
     config = config or study.configured(design)
-    return {
-        part.name: study.part_classes[part.name](
-            **{parameter: design[variable] for parameter, variable in part.parameters.items()},
-            **part.options,
-            density=config.materials[part.material].density_kg_m3,
-        )
-        for part in config.parts
-    }
+    parts = {}
+    for part in config.parts:
+        make: Callable[..., Part] = study.part_classes[part.name]
+        parameters = {parameter: design[variable] for parameter, variable in part.parameters.items()}
+        density = config.materials[part.material].density_kg_m3
+        parts[part.name] = make(**parameters, **part.options, density=density)
+    return parts
 
 
 def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
@@ -272,8 +271,8 @@ def _constraints(
         violations["safety_factor"] = max(0.0, (required - smallest) / required)
     if config.constraints.flight_completed:
         # The share of the flight that was missed: of two lost designs the one that flew longer is better.
-        missed = 1.0 - flight.failure_time / config.flight.duration_s if lost else 0.0
-        violations["qp_failures"] = max(missed, 1e-6) if lost else 0.0
+        flown = (flight.failure_time or 0.0) / config.flight.duration_s
+        violations["qp_failures"] = max(1.0 - flown, 1e-6) if lost else 0.0
     constraints |= {name: clearances[name] for name in ("body_clearance", "plume_clearance") if name in clearances}
     for name, (value, limit) in _short_clearances(config, clearances).items():
         violations[name] = (limit - value) / CLEARANCE_SCALE

@@ -166,8 +166,8 @@ def load_study(source: str | Path = "ironcub") -> Study:
         base_robot=RobotDescription.load(path.parent / config.robot.urdf),
         hash=_study_hash(raw, path, part_classes),
     )
-    for extreme in (lambda v: v.minimum, lambda v: v.maximum):  # a number that a variable sets must exist and be valid
-        study.configured({v.name: extreme(v) for v in space.variables})
+    for corner in ([0] * len(space.variables), [levels - 1 for levels in space.levels]):
+        study.configured(space.from_indices(corner))  # a number that a variable sets must exist and stay valid
     try:
         _ = study.baseline
     except ValueError as error:

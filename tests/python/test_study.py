@@ -87,7 +87,8 @@ def test_hash_follows_the_part_source(copy, tmp_path):
 def test_a_number_of_the_study_can_be_a_design_variable(copy):
     study = copy(
         "# The design that reports compare with.\n[baseline]",
-        '[variables.gain]\nmin = 20\nmax = 80\nstep = 5\nsets = ["flight.gains.attitude_proportional"]\n\n[baseline]\ngain = 50',
+        "[variables.gain]\nmin = 20\nmax = 80\nstep = 5\n"
+        'sets = ["flight.gains.attitude_proportional"]\n\n[baseline]\ngain = 50',
     )
     assert study.config.flight.gains.attitude_proportional == 50.0
     configured = study.configured({"reach": 200, "height": 30, "gain": 35})

@@ -13,4 +13,4 @@ def surface_mesh(solid: Solid) -> SurfaceMesh:
     """Surface of a solid in metres; analytic faces of equal name become one face, unnamed ones share the name ""."""
     names = ["", *solid.names]
     index = np.array([names.index(name) if name in names else 0 for name in solid.face_names])
-    return SurfaceMesh(solid.points * MILLIMETRE, solid.triangles, index[solid.face], names)
+    return SurfaceMesh(solid.points * MILLIMETRE, solid.triangles, index[solid.face].tolist(), names)

@@ -1,0 +1,1374 @@
+"""
+Rigid-body dynamics, box QP and flight.
+"""
+
+from __future__ import annotations
+import collections.abc
+import numpy
+import numpy.typing
+import typing
+
+__all__: list[str] = [
+    "BoxQpResult",
+    "BoxQpSolver",
+    "CommandSpeeds",
+    "CommandWindow",
+    "ContactPoint",
+    "Disturbances",
+    "FailureLimits",
+    "FlightLog",
+    "FlightObjectives",
+    "FlightSettings",
+    "FlightStatus",
+    "Gains",
+    "Integrator",
+    "JetModel",
+    "JointGroup",
+    "Limits",
+    "Model",
+    "ObjectiveParts",
+    "QpStatus",
+    "ReferenceSettings",
+    "Turbine",
+    "Weights",
+    "bias_forces",
+    "center_of_mass",
+    "center_of_mass_jacobian",
+    "center_of_mass_velocity",
+    "centroidal_momentum",
+    "centroidal_momentum_bias",
+    "centroidal_momentum_matrix",
+    "forward_dynamics",
+    "frame_bias_acceleration",
+    "frame_jacobian",
+    "frame_pose",
+    "frame_velocity",
+    "gravity_forces",
+    "hull_distances",
+    "inverse_dynamics",
+    "kinetic_energy",
+    "load_urdf",
+    "locked_inertia",
+    "mass_matrix",
+    "potential_energy",
+    "simulate_flight",
+    "solve_box_qp",
+]
+
+class Model:
+    """
+    A robot, made by load_urdf: joints that move, links as frames, masses.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def base_link(self) -> str:
+        """
+        Name of the root link, whose pose is base_pose.
+        """
+    @property
+    def dofs(self) -> int:
+        """
+        Length of nu: 6 + n, or n if fixed_base.
+        """
+    @property
+    def fixed_base(self) -> bool:
+        """
+        Whether the root link is held.
+        """
+    @property
+    def frame_names(self) -> list[str]:
+        """
+        Names of all links, fixed and locked ones included, in the order of the URDF.
+        """
+    @property
+    def joint_limits(self) -> dict:
+        """
+        Name to lower, upper [rad, m], velocity and effort, as in the URDF. For information: no function applies them.
+        """
+    @property
+    def joint_names(self) -> list[str]:
+        """
+        Names of the joints that move, in the order of s and of the joint part of nu.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Name of the robot.
+        """
+    @property
+    def total_mass(self) -> float:
+        """
+        Mass of all links [kg].
+        """
+
+class QpStatus:
+    """
+    How a box QP ended.
+
+    Members:
+
+      solved : KKT residual at most 1e-9
+
+      iteration_limit : best point found is returned
+
+      not_positive_definite : a Cholesky pivot of the free block is not positive
+
+      bad_data : a value is not a number, or bounds are crossed
+    """
+
+    __members__: typing.ClassVar[dict[str, QpStatus]]
+    bad_data: typing.ClassVar[QpStatus]
+    iteration_limit: typing.ClassVar[QpStatus]
+    not_positive_definite: typing.ClassVar[QpStatus]
+    solved: typing.ClassVar[QpStatus]
+    @typing.overload
+    def __eq__(self, other: QpStatus) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: QpStatus) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class BoxQpResult:
+    """
+    Solution of a box QP with its certificate.
+    """
+    @property
+    def iterations(self) -> int:
+        """
+        Cholesky factorisations
+        """
+    @property
+    def kkt_residual(self) -> float:
+        """
+        largest violation of the optimality conditions, relative to the terms of the gradient; independent of the variables' units
+        """
+    @property
+    def multipliers(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) H x + g at the solution: >= 0 where x is at its lower bound, <= 0 at its upper, 0 elsewhere
+        """
+    @property
+    def status(self) -> QpStatus: ...
+    @property
+    def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) the minimiser
+        """
+
+class BoxQpSolver:
+    """
+    Box QP solver of one size that starts from its last working set.
+    """
+    def __init__(self, size: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def reset(self) -> None:
+        """
+        Forget the last working set.
+        """
+    def solve(
+        self,
+        H: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        g: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        lower: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        upper: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    ) -> BoxQpResult:
+        """
+        As solve_box_qp, warm-started from the last call.
+        """
+    @property
+    def size(self) -> int: ...
+
+class JetModel:
+    """
+    Thrust dynamics of the jets.
+
+    Members:
+
+      integrator : thrust is the sum of the commanded rates
+
+      turbine : second order, with throttle feedback linearisation
+    """
+
+    __members__: typing.ClassVar[dict[str, JetModel]]
+    integrator: typing.ClassVar[JetModel]
+    turbine: typing.ClassVar[JetModel]
+    @typing.overload
+    def __eq__(self, other: JetModel) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: JetModel) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Integrator:
+    """
+    How the plant is advanced over a control step.
+
+    Members:
+
+      euler : explicit, the published one
+
+      semi_implicit_euler
+
+      runge_kutta_4 : fourth order on the Lie group
+    """
+
+    __members__: typing.ClassVar[dict[str, Integrator]]
+    euler: typing.ClassVar[Integrator]
+    runge_kutta_4: typing.ClassVar[Integrator]
+    semi_implicit_euler: typing.ClassVar[Integrator]
+    @typing.overload
+    def __eq__(self, other: Integrator) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Integrator) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class ContactPoint:
+    """
+    A point whose height is watched.
+    """
+
+    frame: str
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) in the frame [m]
+        """
+    @position.setter
+    def position(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+
+class CommandWindow:
+    """
+    Pilot's command at samples with start < t < end; signs of the speeds.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def end(self) -> float: ...
+    @end.setter
+    def end(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def front(self) -> float: ...
+    @front.setter
+    def front(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def left(self) -> float: ...
+    @left.setter
+    def left(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def pitch(self) -> float: ...
+    @pitch.setter
+    def pitch(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def roll(self) -> float: ...
+    @roll.setter
+    def roll(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def start(self) -> float: ...
+    @start.setter
+    def start(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def up(self) -> float: ...
+    @up.setter
+    def up(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def yaw(self) -> float: ...
+    @yaw.setter
+    def yaw(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class CommandSpeeds:
+    """
+    Change of the reference per second.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def front(self) -> float:
+        """
+        [m/s]
+        """
+    @front.setter
+    def front(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def left(self) -> float:
+        """
+        [m/s]
+        """
+    @left.setter
+    def left(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def pitch(self) -> float:
+        """
+        [rad/s]
+        """
+    @pitch.setter
+    def pitch(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def roll(self) -> float:
+        """
+        [rad/s]
+        """
+    @roll.setter
+    def roll(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def up(self) -> float:
+        """
+        [m/s]
+        """
+    @up.setter
+    def up(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def yaw(self) -> float:
+        """
+        [rad/s]
+        """
+    @yaw.setter
+    def yaw(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class ReferenceSettings:
+    """
+    From commands to references.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def angular_velocity_time(self) -> float:
+        """
+        [s]
+        """
+    @angular_velocity_time.setter
+    def angular_velocity_time(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def com_time(self) -> float:
+        """
+        [s]
+        """
+    @com_time.setter
+    def com_time(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def jerk_time(self) -> float:
+        """
+        [s]
+        """
+    @jerk_time.setter
+    def jerk_time(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def pitch_max(self) -> float:
+        """
+        [rad]
+        """
+    @pitch_max.setter
+    def pitch_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def pitch_min(self) -> float:
+        """
+        [rad]
+        """
+    @pitch_min.setter
+    def pitch_min(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def roll_max(self) -> float:
+        """
+        [rad]
+        """
+    @roll_max.setter
+    def roll_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def roll_min(self) -> float:
+        """
+        [rad]
+        """
+    @roll_min.setter
+    def roll_min(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def rotation_gain(self) -> float:
+        """
+        [1/s]
+        """
+    @rotation_gain.setter
+    def rotation_gain(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Gains:
+    """
+    Gains of the momentum, attitude, posture and torque loops.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def attitude_derivative(self) -> float:
+        """
+        c1
+        """
+    @attitude_derivative.setter
+    def attitude_derivative(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def attitude_proportional(self) -> float:
+        """
+        c0
+        """
+    @attitude_proportional.setter
+    def attitude_proportional(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def momentum_derivative(self) -> float:
+        """
+        K_D
+        """
+    @momentum_derivative.setter
+    def momentum_derivative(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def momentum_integral(self) -> float:
+        """
+        K_O, its inverse enters
+        """
+    @momentum_integral.setter
+    def momentum_integral(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def momentum_proportional(self) -> float:
+        """
+        K_P
+        """
+    @momentum_proportional.setter
+    def momentum_proportional(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def posture(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) K_s [1/s]
+        """
+    @posture.setter
+    def posture(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def torque_integral(self) -> float:
+        """
+        k_I [1/s^2]
+        """
+    @torque_integral.setter
+    def torque_integral(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def torque_proportional(self) -> float:
+        """
+        k_P [1/s]
+        """
+    @torque_proportional.setter
+    def torque_proportional(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def turbine_rate(self) -> float:
+        """
+        [1/s]
+        """
+    @turbine_rate.setter
+    def turbine_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Weights:
+    """
+    Weights of the momentum QP and the torque QP.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def constant_inertia(self) -> float: ...
+    @constant_inertia.setter
+    def constant_inertia(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def joint_velocity(self) -> float: ...
+    @joint_velocity.setter
+    def joint_velocity(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def momentum(self) -> float: ...
+    @momentum.setter
+    def momentum(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def posture(self) -> float: ...
+    @posture.setter
+    def posture(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def regularisation(self) -> float: ...
+    @regularisation.setter
+    def regularisation(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_rate(self) -> float: ...
+    @thrust_rate.setter
+    def thrust_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_symmetry(self) -> float: ...
+    @thrust_symmetry.setter
+    def thrust_symmetry(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def torque(self) -> float: ...
+    @torque.setter
+    def torque(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Limits:
+    """
+    Ranges of joints, thrusts and torques.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def joint_lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [rad], before scaling
+        """
+    @joint_lower.setter
+    def joint_lower(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def joint_range_scale(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,)
+        """
+    @joint_range_scale.setter
+    def joint_range_scale(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def joint_slope(self) -> float:
+        """
+        [1/rad]
+        """
+    @joint_slope.setter
+    def joint_slope(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def joint_speed(self) -> float:
+        """
+        [rad/s]
+        """
+    @joint_speed.setter
+    def joint_speed(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def joint_upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [rad], before scaling
+        """
+    @joint_upper.setter
+    def joint_upper(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def thrust_max(self) -> float:
+        """
+        [N]
+        """
+    @thrust_max.setter
+    def thrust_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_rate(self) -> float:
+        """
+        [N/s]
+        """
+    @thrust_rate.setter
+    def thrust_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_slope(self) -> float:
+        """
+        [1/N]
+        """
+    @thrust_slope.setter
+    def thrust_slope(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def torque(self) -> float:
+        """
+        [Nm]
+        """
+    @torque.setter
+    def torque(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def torque_rate(self) -> float:
+        """
+        [Nm/s]
+        """
+    @torque_rate.setter
+    def torque_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class JointGroup:
+    """
+    Joints of one term of the velocity objective.
+    """
+
+    name: str
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def joints(self) -> list[str]: ...
+    @joints.setter
+    def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def weight(self) -> float: ...
+    @weight.setter
+    def weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class FailureLimits:
+    """
+    The flight is lost beyond these.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def attitude_error(self) -> float:
+        """
+        [rad]
+        """
+    @attitude_error.setter
+    def attitude_error(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def com_error(self) -> float:
+        """
+        [m]
+        """
+    @com_error.setter
+    def com_error(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def joint_speed(self) -> float:
+        """
+        [rad/s]
+        """
+    @joint_speed.setter
+    def joint_speed(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Turbine:
+    """
+    Second-order jet: T'' = f + g (U + B_UU U^2), f = K_T T + K_TT T^2 + K_D T' + K_DD T'^2 + K_TD T T' + c, g = B_U + B_T T + B_D T'; thrust T [N], throttle U [%].
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def B_D(self) -> float: ...
+    @B_D.setter
+    def B_D(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_T(self) -> float: ...
+    @B_T.setter
+    def B_T(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_U(self) -> float: ...
+    @B_U.setter
+    def B_U(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_UU(self) -> float: ...
+    @B_UU.setter
+    def B_UU(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_D(self) -> float: ...
+    @K_D.setter
+    def K_D(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_DD(self) -> float: ...
+    @K_DD.setter
+    def K_DD(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_T(self) -> float: ...
+    @K_T.setter
+    def K_T(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_TD(self) -> float: ...
+    @K_TD.setter
+    def K_TD(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_TT(self) -> float: ...
+    @K_TT.setter
+    def K_TT(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def c(self) -> float: ...
+    @c.setter
+    def c(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def throttle_max(self) -> float:
+        """
+        [%]
+        """
+    @throttle_max.setter
+    def throttle_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Disturbances:
+    """
+    What the controller does not know.
+    """
+    def __init__(self, **kwargs) -> None: ...
+    @property
+    def gust_deviation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) standard deviation of the gusts [N]
+        """
+    @gust_deviation.setter
+    def gust_deviation(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def gust_time(self) -> float:
+        """
+        correlation time [s]
+        """
+    @gust_time.setter
+    def gust_time(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def mass_deviation(self) -> float:
+        """
+        relative standard deviation, drawn per body
+        """
+    @mass_deviation.setter
+    def mass_deviation(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def mass_scale(self) -> float:
+        """
+        plant's inertias over the model's
+        """
+    @mass_scale.setter
+    def mass_scale(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def seed(self) -> int: ...
+    @seed.setter
+    def seed(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_deviation(self) -> float:
+        """
+        relative standard deviation, drawn per jet
+        """
+    @thrust_deviation.setter
+    def thrust_deviation(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_scale(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (jets,) plant's thrust over the jet's; empty: 1
+        """
+    @thrust_scale.setter
+    def thrust_scale(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def wind_force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) on the base's origin, world axes [N]
+        """
+    @wind_force.setter
+    def wind_force(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+
+class FlightSettings:
+    """
+    Everything that decides a flight besides the robot; SI units. Vectors over joints have the order of `joints`, vectors over jets that of `jets`. Assign lists and arrays whole.
+    """
+
+    command_speeds: CommandSpeeds
+    disturbances: Disturbances
+    failure: FailureLimits
+    gains: Gains
+    integrator: Integrator
+    jet_model: JetModel
+    limits: Limits
+    reference: ReferenceSettings
+    weights: Weights
+    def __init__(self, **kwargs) -> None: ...
+    def validate(self) -> None:
+        """
+        Raise ValueError naming the first attribute that is wrong.
+        """
+    @property
+    def base_pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
+        """
+        (4, 4)
+        """
+    @base_pose.setter
+    def base_pose(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]) -> None: ...
+    @property
+    def contact_points(self) -> list[ContactPoint]: ...
+    @contact_points.setter
+    def contact_points(self, arg0: collections.abc.Sequence[ContactPoint]) -> None: ...
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @duration.setter
+    def duration(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def ground_height(self) -> float:
+        """
+        [m]
+        """
+    @ground_height.setter
+    def ground_height(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def groups(self) -> list[JointGroup]:
+        """
+        list of JointGroup
+        """
+    @groups.setter
+    def groups(self, arg0: collections.abc.Sequence[JointGroup]) -> None: ...
+    @property
+    def initial_free_fall(self) -> bool:
+        """
+        first step without jets and torques, as published
+        """
+    @initial_free_fall.setter
+    def initial_free_fall(self, arg0: bool) -> None: ...
+    @property
+    def initial_joints(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [rad]
+        """
+    @initial_joints.setter
+    def initial_joints(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def initial_thrusts(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (jets,) [N]
+        """
+    @initial_thrusts.setter
+    def initial_thrusts(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def jets(self) -> list[str]:
+        """
+        frames; thrust pushes along their -z
+        """
+    @jets.setter
+    def jets(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def joints(self) -> list[str]:
+        """
+        names
+        """
+    @joints.setter
+    def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def samples(self) -> int:
+        """
+        number of samples of the flight
+        """
+    @property
+    def step(self) -> float:
+        """
+        of the control loop [s]
+        """
+    @step.setter
+    def step(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def substeps(self) -> int:
+        """
+        plant steps per control step
+        """
+    @substeps.setter
+    def substeps(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def symmetry_pairs(self) -> list[tuple[int, int]]:
+        """
+        pairs of jet indices
+        """
+    @symmetry_pairs.setter
+    def symmetry_pairs(
+        self,
+        arg0: collections.abc.Sequence[
+            tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex]
+        ],
+    ) -> None: ...
+    @property
+    def trajectory(self) -> list[CommandWindow]:
+        """
+        list of CommandWindow
+        """
+    @trajectory.setter
+    def trajectory(self, arg0: collections.abc.Sequence[CommandWindow]) -> None: ...
+    @property
+    def turbines(self) -> list[Turbine]:
+        """
+        one per jet
+        """
+    @turbines.setter
+    def turbines(self, arg0: collections.abc.Sequence[Turbine]) -> None: ...
+
+class FlightStatus:
+    """
+    Whether the flight reached its end.
+
+    Members:
+
+      completed
+
+      failed
+    """
+
+    __members__: typing.ClassVar[dict[str, FlightStatus]]
+    completed: typing.ClassVar[FlightStatus]
+    failed: typing.ClassVar[FlightStatus]
+    @typing.overload
+    def __eq__(self, other: FlightStatus) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: FlightStatus) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class FlightObjectives:
+    """
+    One family of objectives, to be minimised.
+    """
+    @property
+    def joint_velocity(self) -> float: ...
+    @property
+    def momentum(self) -> float: ...
+    @property
+    def thrust(self) -> float:
+        """
+        mean total thrust [N]
+        """
+
+class ObjectiveParts:
+    """
+    Terms of a family before they are added.
+    """
+    @property
+    def angular_momentum(self) -> float: ...
+    @property
+    def joint_velocity(self) -> list[float]:
+        """
+        one per joint group, without its weight
+        """
+    @property
+    def linear_momentum(self) -> float: ...
+
+class FlightLog:
+    """
+    What happened in a flight: histories (read-only arrays that share the log's memory), status and summary. SI units, world axes.
+    """
+    @property
+    def active_bounds(self) -> numpy.ndarray:
+        """
+        (N,) of the momentum QP
+        """
+    @property
+    def angular_velocity_reference(self) -> numpy.ndarray:
+        """
+        (N, 3) base axes [rad/s]
+        """
+    @property
+    def base_position(self) -> numpy.ndarray:
+        """
+        (N, 3) [m]
+        """
+    @property
+    def base_rotation(self) -> numpy.ndarray:
+        """
+        (N, 3, 3) world_R_base
+        """
+    @property
+    def clearance(self) -> numpy.ndarray:
+        """
+        (N,) lowest contact point above the ground [m]
+        """
+    @property
+    def com(self) -> numpy.ndarray:
+        """
+        (N, 3) [m]
+        """
+    @property
+    def com_reference(self) -> numpy.ndarray:
+        """
+        (N, 3) [m]
+        """
+    @property
+    def com_velocity_reference(self) -> numpy.ndarray:
+        """
+        (N, 3) [m/s]
+        """
+    @property
+    def completed(self) -> bool: ...
+    @property
+    def failure_reason(self) -> str | None:
+        """
+        text, or None
+        """
+    @property
+    def failure_time(self) -> float | None:
+        """
+        [s], or None
+        """
+    @property
+    def ground_touched(self) -> bool: ...
+    @property
+    def joint_positions(self) -> numpy.ndarray:
+        """
+        (N, joints) [rad]
+        """
+    @property
+    def joint_velocity_command(self) -> numpy.ndarray:
+        """
+        (N, joints) [rad/s]
+        """
+    @property
+    def max_attitude_error(self) -> float:
+        """
+        [rad]
+        """
+    @property
+    def max_com_error(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def max_joint_speed(self) -> float:
+        """
+        [rad/s]
+        """
+    @property
+    def max_thrust(self) -> float:
+        """
+        [N]
+        """
+    @property
+    def max_torque(self) -> float:
+        """
+        [Nm]
+        """
+    @property
+    def min_clearance(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def min_thrust(self) -> float:
+        """
+        [N]
+        """
+    @property
+    def momentum(self) -> numpy.ndarray:
+        """
+        (N, 6) linear, angular about the centre of mass
+        """
+    @property
+    def momentum_error(self) -> numpy.ndarray:
+        """
+        (N, 6) E_l, E_w
+        """
+    @property
+    def paper(self) -> FlightObjectives: ...
+    @property
+    def qp_failures(self) -> int: ...
+    @property
+    def qp_iterations(self) -> numpy.ndarray:
+        """
+        (N, 2) factorisations of the momentum and the torque QP
+        """
+    @property
+    def rms(self) -> FlightObjectives: ...
+    @property
+    def rms_parts(self) -> ObjectiveParts: ...
+    @property
+    def rotation_reference(self) -> numpy.ndarray:
+        """
+        (N, 3, 3)
+        """
+    @property
+    def samples(self) -> int: ...
+    @property
+    def script(self) -> FlightObjectives: ...
+    @property
+    def script_parts(self) -> ObjectiveParts: ...
+    @property
+    def status(self) -> FlightStatus: ...
+    @property
+    def step(self) -> float: ...
+    @property
+    def throttle(self) -> numpy.ndarray:
+        """
+        (N, jets) [%], turbine jets only
+        """
+    @property
+    def thrust(self) -> numpy.ndarray:
+        """
+        (N, jets) [N]
+        """
+    @property
+    def thrust_rate_command(self) -> numpy.ndarray:
+        """
+        (N, jets) [N/s]
+        """
+    @property
+    def time(self) -> numpy.ndarray:
+        """
+        (N,) [s]
+        """
+    @property
+    def torque(self) -> numpy.ndarray:
+        """
+        (N, joints) [Nm]
+        """
+    @property
+    def total_qp_iterations(self) -> int: ...
+    @property
+    def velocity(self) -> numpy.ndarray:
+        """
+        (N, 6 + joints) mixed
+        """
+    @property
+    def wind(self) -> numpy.ndarray:
+        """
+        (N, 3) force on the base's origin [N]
+        """
+
+def bias_forces(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    b (6+n,): gravity, Coriolis and centrifugal forces [N, N m].
+    """
+
+def center_of_mass(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Centre of mass (3,) in the world [m].
+    """
+
+def center_of_mass_jacobian(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Jacobian of the centre of mass (3, 6+n).
+    """
+
+def center_of_mass_velocity(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Velocity of the centre of mass (3,) [m/s].
+    """
+
+def centroidal_momentum(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Linear and angular momentum about the centre of mass (6,), world axes.
+    """
+
+def centroidal_momentum_bias(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Rate of C times nu (6,): rate of the momentum where nu_dot = 0.
+    """
+
+def centroidal_momentum_matrix(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    C (6, 6+n) with C nu = centroidal_momentum.
+    """
+
+def forward_dynamics(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    tau: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    wrenches: dict = {},
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Accelerations nu_dot (6+n,), by the articulated-body algorithm.
+
+    Args:
+        tau: (n,) joint torques [N m] or forces [N].
+        wrenches: frame name to force and moment (6,) [N, N m], world axes, at the frame's origin.
+    Raises: SolverError where the mass matrix is singular.
+    """
+
+def frame_bias_acceleration(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    frame: str,
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Rate of J times nu (6,) [m/s^2, rad/s^2].
+    """
+
+def frame_jacobian(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    frame: str,
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    J (6, 6+n): velocity of the frame's origin and angular velocity, world axes.
+    """
+
+def frame_pose(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    frame: str,
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Pose (4, 4) of a link in the world.
+    """
+
+def frame_velocity(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    frame: str,
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    J nu (6,) [m/s, rad/s].
+    """
+
+def gravity_forces(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    The bias forces at rest (6+n,) [N, N m].
+    """
+
+def hull_distances(
+    hulls: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]],
+    first: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+    second: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+    first_T_second: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Signed distances of pairs of convex hulls.
+
+    Args:
+        hulls: points (n, 3) of each hull in its own frame [m]; points inside a hull do no harm.
+        first, second: (m,) numbers of the hulls of each pair.
+        first_T_second: (m, 4, 4) pose of the second hull's frame in the first's.
+    Returns: (m,) [m]; where two hulls overlap, minus the length of the shortest translation that parts them.
+    Raises: ValueError for wrong shapes, numbers or values that are not finite.
+    Source: Gilbert, Johnson, Keerthi (1988); van den Bergen (2001).
+    """
+
+def inverse_dynamics(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu_dot: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    M nu_dot + b (6+n,) [N, N m], by the recursive Newton-Euler algorithm.
+    """
+
+def kinetic_energy(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> float:
+    """
+    [J]
+    """
+
+def load_urdf(
+    text_or_path: typing.Any,
+    joints: collections.abc.Sequence[str] | None = None,
+    as_published: bool = False,
+    fixed_base: bool = False,
+) -> Model:
+    """
+    The robot in a URDF, given as text or as the path of a file.
+
+    Args:
+        text_or_path: the text (starts with '<') or a path.
+        joints: names of the joints that move, in the wanted order; all others are locked at position
+            0 and their links lumped. None: every joint that is not fixed, in the order of the URDF.
+        as_published: accept inertia tensors that no body can have; nothing else is waived.
+        fixed_base: hold the root link; nu and all matrices then lose the six base coordinates.
+    Raises: UrdfError naming the element; UnknownNameError for a joint that is not there.
+    """
+
+def locked_inertia(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Inertia (3, 3) of the robot frozen in its posture, about the centre of mass, world axes.
+    """
+
+def mass_matrix(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    M (6+n, 6+n) of M nu_dot + b = (0, tau) + sum of J^T wrench; mixed convention.
+    """
+
+def potential_energy(
+    model: Model,
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> float:
+    """
+    [J], zero with the centre of mass at height 0 of the world.
+    """
+
+def simulate_flight(model: Model, settings: FlightSettings) -> FlightLog:
+    """
+    Fly the model along the settings' trajectory. The model must have been loaded with joints=settings.joints. A lost flight is a status of the log. Raises ValueError if model and settings do not fit each other.
+    """
+
+def solve_box_qp(
+    H: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    g: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    lower: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+) -> BoxQpResult:
+    """
+    Minimise 0.5 x'Hx + g'x with lower <= x <= upper; H (n, n) symmetric positive definite, bounds may be infinite or equal. Raises ValueError on wrong sizes, NaN, an asymmetric H or crossed bounds; everything else is a status of the result.
+    """

@@ -1,0 +1,545 @@
+"""
+Surfaces, tetrahedra and linear elasticity.
+"""
+
+from __future__ import annotations
+import collections.abc
+import numpy
+import numpy.typing
+import os
+import typing
+
+__all__: list[str] = [
+    "Acceleration",
+    "AffineTraction",
+    "BodyForce",
+    "Disc",
+    "Force",
+    "MassProperties",
+    "Material",
+    "MeshQuality",
+    "Pressure",
+    "Selection",
+    "SizeField",
+    "SizeSource",
+    "StaticResult",
+    "StaticSettings",
+    "StaticSystem",
+    "Support",
+    "SurfaceMesh",
+    "TetMesh",
+    "Traction",
+    "face_area",
+    "load_surface",
+    "load_vector",
+    "mass_properties",
+    "selected_nodes",
+    "selected_triangles",
+    "tetrahedralize",
+    "triangles_in_box",
+    "triangles_near",
+    "triangles_with_normal",
+]
+
+class SurfaceMesh:
+    """
+    Triangles that belong to named faces, in metres.
+
+    Args:
+        points: (n, 3) m.
+        triangles: (m, 3) indices, counter-clockwise seen from outside.
+        face: (m,) index into face_names; one unnamed face if absent.
+        face_names: names, "" for an unnamed face.
+
+    Raises:
+        ValueError: sizes or indices that do not fit; a name given twice.
+        MeshError: a coordinate that is not finite.
+    """
+    def __init__(
+        self,
+        points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+        triangles: typing.Annotated[numpy.typing.ArrayLike, numpy.int32, "[m, 3]"],
+        face: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] | None = None,
+        face_names: collections.abc.Sequence[str] | None = None,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    @property
+    def face(self) -> numpy.ndarray:
+        """
+        (m,) index into face_names
+        """
+    @property
+    def face_names(self) -> list[str]: ...
+    @property
+    def points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (n, 3) m
+        """
+    @property
+    def triangles(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, 3]"]:
+        """
+        (m, 3)
+        """
+
+class MassProperties:
+    """
+    Mass, centre of mass and inertia of a solid.
+    """
+    @property
+    def com(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) m, axes of the surface
+        """
+    @property
+    def inertia(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        (3, 3) kg m² about the centre of mass, axes of the surface
+        """
+    @property
+    def mass(self) -> float:
+        """
+        kg
+        """
+    @property
+    def volume(self) -> float:
+        """
+        m³
+        """
+
+class SizeSource:
+    """
+    A polyline near which elements are small.
+
+    Args:
+        points: (k, 3) m; one row is a point.
+        size: edge length within `radius` of the polyline [m].
+        growth: increase of the edge length per metre of distance beyond `radius`.
+        radius: m.
+    """
+    def __init__(
+        self,
+        points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+        size: typing.SupportsFloat | typing.SupportsIndex,
+        growth: typing.SupportsFloat | typing.SupportsIndex = 0.5,
+        radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> None: ...
+    @property
+    def growth(self) -> float: ...
+    @property
+    def points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def size(self) -> float: ...
+
+class SizeField:
+    """
+    Edge length wanted at each point.
+
+    min(base, size + growth * max(0, distance - radius)) over all sources; metres.
+    """
+    def __call__(
+        self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Edge length [m] at points (k, 3) m.
+        """
+    def __init__(
+        self, base: typing.SupportsFloat | typing.SupportsIndex, sources: collections.abc.Sequence[SizeSource] = []
+    ) -> None: ...
+    @property
+    def base(self) -> float: ...
+    @property
+    def sources(self) -> list[SizeSource]: ...
+
+class MeshQuality:
+    """
+    Shape of the tetrahedra between their corners.
+    """
+    @property
+    def area(self) -> float:
+        """
+        m²
+        """
+    @property
+    def below_5_degrees(self) -> int:
+        """
+        elements with a dihedral angle below 5 degrees
+        """
+    @property
+    def max_dihedral_deg(self) -> float: ...
+    @property
+    def mean_radius_ratio(self) -> float: ...
+    @property
+    def min_dihedral_deg(self) -> float: ...
+    @property
+    def min_radius_ratio(self) -> float:
+        """
+        3 inscribed / circumscribed radius; 1 regular, 0 flat
+        """
+    @property
+    def volume(self) -> float:
+        """
+        m³
+        """
+    @property
+    def worst_tet(self) -> int:
+        """
+        of the smallest dihedral angle
+        """
+
+class TetMesh:
+    """
+    Ten-node tetrahedra with named boundary faces.
+
+    Args:
+        nodes: (n, 3) m.
+        tets: (m, 4), which get straight mid-edge nodes, or (m, 10) with mid-edge nodes on edges
+            01 12 02 03 13 23. Elements given inside out are turned over.
+        faces: name -> (k, 3) boundary sides by their corner nodes.
+
+    Raises:
+        MeshError: flat elements, nodes without element, indices out of range, sides that are not on
+            the boundary.
+    """
+    @typing.overload
+    def __init__(
+        self,
+        nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+        tets: typing.Annotated[numpy.typing.ArrayLike, numpy.int32, "[m, 10]"],
+        faces: collections.abc.Mapping[str, typing.Annotated[numpy.typing.ArrayLike, numpy.int32, "[m, 3]"]] = {},
+    ) -> None: ...
+    @typing.overload
+    def __init__(
+        self,
+        nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+        tets: typing.Annotated[numpy.typing.ArrayLike, numpy.int32, "[m, 4]"],
+        faces: collections.abc.Mapping[str, typing.Annotated[numpy.typing.ArrayLike, numpy.int32, "[m, 3]"]] = {},
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    @property
+    def boundary(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, 6]"]:
+        """
+        (b, 6); mid-edge nodes on 01 12 20
+        """
+    @property
+    def boundary_face(self) -> numpy.ndarray:
+        """
+        (b,) index into face_names
+        """
+    @property
+    def face_names(self) -> list[str]: ...
+    @property
+    def nodes(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (n, 3) m
+        """
+    @property
+    def quality(self) -> MeshQuality:
+        """
+        MeshQuality of the elements
+        """
+    @property
+    def tets(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, 10]"]:
+        """
+        (m, 10); mid-edge nodes on 01 12 02 03 13 23
+        """
+
+class Material:
+    """
+    Linear elastic, isotropic material.
+    """
+    def __init__(
+        self,
+        name: str,
+        young_modulus: typing.SupportsFloat | typing.SupportsIndex,
+        poisson_ratio: typing.SupportsFloat | typing.SupportsIndex,
+        density: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        yield_strength: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    @property
+    def density(self) -> float:
+        """
+        kg/m3
+        """
+    @property
+    def name(self) -> str: ...
+    @property
+    def poisson_ratio(self) -> float: ...
+    @property
+    def yield_strength(self) -> float:
+        """
+        Pa
+        """
+    @property
+    def young_modulus(self) -> float:
+        """
+        Pa
+        """
+
+class Selection:
+    def __init__(
+        self,
+        faces: collections.abc.Sequence[str] = [],
+        triangles: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+        nodes: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+    ) -> None: ...
+    @property
+    def faces(self) -> list[str]: ...
+    @property
+    def nodes(self) -> list[int]: ...
+    @property
+    def triangles(self) -> list[int]: ...
+
+class Support:
+    def __init__(
+        self,
+        where: Selection,
+        fixed: typing.Annotated[collections.abc.Sequence[bool], "FixedSize(3)"] = [True, True, True],
+        displacement: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"] = ...,
+        symmetry: bool = False,
+    ) -> None: ...
+
+class Force:
+    def __init__(
+        self, where: Selection, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> None: ...
+
+class Traction:
+    def __init__(
+        self, where: Selection, traction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> None: ...
+
+class Pressure:
+    def __init__(self, where: Selection, pressure: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Disc:
+    def __init__(
+        self,
+        center: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        axis: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        radius: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
+class AffineTraction:
+    def __init__(
+        self,
+        where: Selection,
+        force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        moment: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        region: Disc | None = None,
+    ) -> None: ...
+
+class Acceleration:
+    def __init__(self, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+
+class BodyForce:
+    def __init__(self, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]) -> None: ...
+
+class StaticSettings:
+    def __init__(self) -> None: ...
+    @property
+    def copies(self) -> int: ...
+    @copies.setter
+    def copies(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def exclusion_distance(self) -> float: ...
+    @exclusion_distance.setter
+    def exclusion_distance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def residual_tolerance(self) -> float: ...
+    @residual_tolerance.setter
+    def residual_tolerance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def stress_volume(self) -> float: ...
+    @stress_volume.setter
+    def stress_volume(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class StaticResult:
+    """
+    Displacement, stress and safety factor of a part.
+    """
+    @property
+    def displacement(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (n, 3) m
+        """
+    @property
+    def equations(self) -> int: ...
+    @property
+    def max_displacement(self) -> float:
+        """
+        m
+        """
+    @property
+    def peak_position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3) m
+        """
+    @property
+    def peak_stress(self) -> float:
+        """
+        Pa
+        """
+    @property
+    def reactions(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (n, 3) N, supports on the part
+        """
+    @property
+    def residual(self) -> float:
+        """
+        relative, over the free components
+        """
+    @property
+    def safety_factor(self) -> float: ...
+    @property
+    def strain_energy(self) -> float:
+        """
+        J
+        """
+    @property
+    def stress(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 6]"]:
+        """
+        (n, 6) Pa: xx yy zz xy yz zx
+        """
+    @property
+    def stress_50(self) -> float:
+        """
+        Pa
+        """
+    @property
+    def support_forces(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (supports, 3) N
+        """
+    @property
+    def von_mises(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n) Pa
+        """
+    @property
+    def work(self) -> float:
+        """
+        J, load times displacement
+        """
+
+class StaticSystem:
+    """
+    A model factorised once for many load cases.
+    """
+    def __init__(
+        self, mesh: TetMesh, material: Material, supports: collections.abc.Sequence[Support], settings: StaticSettings
+    ) -> None: ...
+    def solve(
+        self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
+    ) -> StaticResult: ...
+
+def face_area(mesh: TetMesh, triangles: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> float:
+    """
+    Area of curved boundary faces, m2.
+    """
+
+def load_surface(
+    path: os.PathLike | str | bytes,
+    scale: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    *,
+    feature_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 40.0,
+) -> SurfaceMesh:
+    """
+    Closed surface of an STL file, binary or ASCII, in metres.
+
+    Args:
+        path: the file.
+        scale: metres per unit of the file; 1e-3 for millimetres.
+        feature_angle_deg: edges sharper than this bound the (unnamed) faces.
+
+    Raises:
+        MeshError: unreadable, truncated, not finite, empty, huge, open, inside-out, not manifold,
+            self-intersecting; the message says what, where and why.
+    """
+
+def load_vector(
+    mesh: TetMesh,
+    material: Material,
+    loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+def mass_properties(surface: SurfaceMesh, density: typing.SupportsFloat | typing.SupportsIndex) -> MassProperties:
+    """
+    Mass, centre of mass and inertia of the polyhedron inside a closed surface.
+
+    Args:
+        surface: closed and outward-oriented.
+        density: kg/m³, positive.
+
+    Raises:
+        MeshError: the surface bounds no solid.
+        ValueError: density is not positive.
+    """
+
+def selected_nodes(mesh: TetMesh, selection: Selection) -> list[int]:
+    """
+    Nodes that a selection holds, those of its faces included, sorted.
+    """
+
+def selected_triangles(mesh: TetMesh, selection: Selection) -> list[int]:
+    """
+    Rows of mesh.boundary that a selection holds, sorted.
+    """
+
+def tetrahedralize(
+    surface: SurfaceMesh,
+    edge_length: typing.SupportsFloat | typing.SupportsIndex | SizeField,
+    *,
+    feature_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 40.0,
+    facet_distance: typing.SupportsFloat | typing.SupportsIndex = 0.06,
+    facet_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 25.0,
+    radius_edge: typing.SupportsFloat | typing.SupportsIndex = 2.5,
+    sliver_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 6.0,
+    flat_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 6.0,
+    time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0,
+    max_vertices: typing.SupportsInt | typing.SupportsIndex = 400000,
+    check_intersections: bool = True,
+) -> TetMesh:
+    """
+    Ten-node tetrahedra of the solid inside a closed surface.
+
+    Sharp edges and borders between different faces become lines of the mesh, and each boundary side
+    carries the face of the surface it lies on. The same input gives the same mesh.
+
+    Args:
+        surface: closed, outward-oriented, one solid.
+        edge_length: m, or a SizeField.
+        feature_angle_deg: edges sharper than this are kept.
+        facet_distance: of boundary sides to the surface, relative to the edge length.
+        facet_angle_deg: smallest angle of a boundary side, at most 30.
+        radius_edge: largest circumradius over shortest edge, at least 2.
+        sliver_angle_deg: elements with a smaller dihedral angle are improved where possible.
+        flat_angle_deg: flatter boundary elements on one face are removed.
+        time_limit: processor seconds.
+        max_vertices: of corner nodes.
+        check_intersections: look for triangles that cross each other first.
+
+    Raises:
+        MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces or of
+            wrong volume; a limit was reached.
+        ValueError: an option out of range.
+    """
+
+def triangles_in_box(
+    mesh: TetMesh,
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+) -> list[int]: ...
+def triangles_near(
+    mesh: TetMesh,
+    point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+    max_bend: typing.SupportsFloat | typing.SupportsIndex,
+) -> list[int]: ...
+def triangles_with_normal(
+    mesh: TetMesh,
+    normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+    angle: typing.SupportsFloat | typing.SupportsIndex,
+) -> list[int]: ...
