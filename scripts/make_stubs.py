@@ -17,7 +17,11 @@ def generate(folder: Path) -> dict[str, str]:
         capture_output=True,
     )
     root = folder / "codesign" / "_core"
-    subprocess.run([sys.executable, "-m", "ruff", "format", "--quiet", "--isolated", "--line-length=120", str(root)], check=True, cwd=REPOSITORY)
+    subprocess.run(
+        [sys.executable, "-m", "ruff", "format", "--quiet", "--isolated", "--line-length=120", str(root)],
+        check=True,
+        cwd=REPOSITORY,
+    )
     return {str(p.relative_to(root)): p.read_text() for p in sorted(root.rglob("*.pyi"))}
 
 

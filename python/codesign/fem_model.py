@@ -250,7 +250,7 @@ def native_supports(mesh: TetMesh, supports: Sequence[Support]) -> list[_core.Su
     return [support.native(mesh) for support in supports]
 
 
-def native_loads(mesh: TetMesh, loads: Sequence[Load]) -> list[object]:
+def native_loads(mesh: TetMesh, loads: Sequence[Load]) -> list[Any]:
     """Loads as the native solver takes them."""
     return [load.native(mesh) for load in loads]
 
