@@ -236,11 +236,24 @@ class WindowConfig(Section, frozen=True, kw_only=True):
     yaw: Sign = 0.0
 
 
+class DisturbancesConfig(Section, frozen=True, kw_only=True):
+    """What the flight has and the controller does not know; deviations are drawn from the seed."""
+
+    wind_n: Vector3 = (0.0, 0.0, 0.0)
+    gust_deviation_n: tuple[NonNegative, NonNegative, NonNegative] = (0.0, 0.0, 0.0)
+    gust_time_s: Positive = 1.0
+    mass_scale: Positive = 1.0
+    mass_deviation: NonNegative = 0.0
+    thrust_deviation: NonNegative = 0.0
+    seed: Annotated[int, Meta(ge=0)] = 0
+
+
 class TrajectoryConfig(Section, frozen=True, kw_only=True):
-    """Piloted segments; hover outside of them."""
+    """Piloted segments, hover outside of them; calm unless disturbed."""
 
     windows: list[WindowConfig]
     label: str = ""
+    disturbances: DisturbancesConfig = DisturbancesConfig()
 
 
 class ObjectivesConfig(Section, frozen=True, kw_only=True):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import msgspec
 import numpy as np
 
 from codesign import dynamics as dyn
-from codesign.config import FlightConfig, TrajectoryConfig
+from codesign.config import DisturbancesConfig, FlightConfig, StudyConfig, TrajectoryConfig
 from codesign.errors import StudyError
 from codesign.transforms import pose
 from codesign.units import DEGREE
@@ -16,6 +17,23 @@ TURBINE_COEFFICIENTS = ("K_T", "K_TT", "K_D", "K_DD", "K_TD", "B_U", "B_T", "B_D
 def joint_names(flight: FlightConfig) -> list[str]:
     """Actuated joints in the order of all joint vectors: group by group."""
     return [joint for group in flight.joint_groups for joint in group.joints]
+
+
+def find_trajectory(config: StudyConfig, name: str) -> TrajectoryConfig:
+    """A trajectory of the study; `name@seed`: with its disturbances drawn from another seed.
+
+    Raises: StudyError if there is none of that name, or the seed is not a whole number.
+    """
+    base, at, seed = name.partition("@")
+    if base not in config.trajectories:
+        raise StudyError(f"no trajectory {base!r}; this study has {', '.join(config.trajectories)}")
+    trajectory = config.trajectories[base]
+    if not at:
+        return trajectory
+    if not seed.isdecimal():
+        raise StudyError(f"trajectory {name!r}: the seed after @ must be a whole number")
+    disturbances = msgspec.structs.replace(trajectory.disturbances, seed=int(seed))
+    return msgspec.structs.replace(trajectory, disturbances=disturbances)
 
 
 def flight_settings(
@@ -40,6 +58,7 @@ def flight_settings(
         )
         for w in trajectory.windows
     ]
+    settings.disturbances = _disturbances(trajectory.disturbances)
     settings.contact_points = [
         dyn.ContactPoint(frame=frame, position=np.array(point))
         for frame in flight.ground.frames
@@ -52,6 +71,18 @@ def flight_settings(
         joint_speed=flight.failure.joint_speed_rad_s,
     )
     return settings
+
+
+def _disturbances(disturbances: DisturbancesConfig) -> dyn.Disturbances:
+    return dyn.Disturbances(
+        wind_force=np.array(disturbances.wind_n),
+        gust_deviation=np.array(disturbances.gust_deviation_n),
+        gust_time=disturbances.gust_time_s,
+        mass_scale=disturbances.mass_scale,
+        mass_deviation=disturbances.mass_deviation,
+        thrust_deviation=disturbances.thrust_deviation,
+        seed=disturbances.seed,
+    )
 
 
 def _per_joint(flight: FlightConfig, attribute: str) -> np.ndarray:

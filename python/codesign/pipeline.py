@@ -17,10 +17,10 @@ from codesign import dynamics as dyn
 from codesign.analysis import PressedFace, StressSettings, part_case, part_document
 from codesign.config import StudyConfig
 from codesign.design import Design
-from codesign.errors import CodesignError, StudyError
+from codesign.errors import CodesignError
 from codesign.evaluation import Evaluation
 from codesign.fem import Material
-from codesign.flight_setup import flight_settings, joint_names
+from codesign.flight_setup import find_trajectory, flight_settings, joint_names
 from codesign.geometry.part import Part
 from codesign.inertial import Inertial
 from codesign.interference import flown_interference
@@ -51,7 +51,7 @@ def evaluate(study: Study, design: Design, trajectory: str | None = None, cache:
 def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartCache | None) -> Evaluation:
     start = time.perf_counter()
     config = study.configured(design)
-    settings = flight_settings(config.flight, _trajectory(config, trajectory))
+    settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory))
     parts = build_parts(study, design, config)
     known: dict[str, dict[str, Any]] = {}
     if cache is not None:
@@ -158,7 +158,7 @@ def fly_robot(
     Raises: UrdfError, StudyError.
     """
     config = study.config
-    settings = flight_settings(config.flight, _trajectory(config, trajectory), jets)
+    settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory), jets)
     start = time.perf_counter()
     model = dyn.load_urdf(robot, joints=joint_names(config.flight), as_published=as_published)
     loaded = time.perf_counter()
@@ -222,13 +222,6 @@ def _parts_of(log: dyn.FlightLog, family: str, config: StudyConfig) -> dict[str,
         "angular_momentum": parts.angular_momentum,
         **dict(zip(groups, parts.joint_velocity, strict=True)),
     }
-
-
-def _trajectory(config: StudyConfig, name: str | None) -> Any:
-    name = name or config.flight.trajectory
-    if name not in config.trajectories:
-        raise StudyError(f"no trajectory {name!r}; this study has {', '.join(config.trajectories)}")
-    return config.trajectories[name]
 
 
 def _clearances(

@@ -2,13 +2,17 @@
 
 import json
 
+import msgspec
 import pytest
 
+from codesign.config import DisturbancesConfig
 from codesign.derived import coarse, load_coarse
-from codesign.errors import DesignError
+from codesign.errors import DesignError, StudyError
 from codesign.evaluation import Evaluation
+from codesign.flight_setup import find_trajectory, flight_settings
 from codesign.optimization import optimize, sweep
 from codesign.robust import aggregate, load_robust, robust
+from codesign.study import load_study
 from fake_study import FakeStudy, study
 
 
@@ -106,3 +110,22 @@ def test_coarse_study_is_the_study_on_part_of_its_grid(tmp_path) -> None:
         DesignError, match=r"a: 4 evenly spaced values are not possible, but \[2, 3, 5, 6, 11, 21\] are"
     ):
         coarse(fake, (4, 3, 2))
+
+
+def test_seed_in_a_trajectory_name_redraws_its_disturbances() -> None:
+    config = load_study("ironcub").config
+    calm = config.trajectories["envelope"]
+    gusty = msgspec.structs.replace(
+        calm, disturbances=DisturbancesConfig(gust_deviation_n=(5.0, 5.0, 2.0), mass_deviation=0.01, seed=3)
+    )
+    config = msgspec.structs.replace(config, trajectories={"envelope": calm, "gusty": gusty})
+    seeds = [
+        flight_settings(config.flight, find_trajectory(config, name)).disturbances.seed for name in ("gusty", "gusty@8")
+    ]
+    assert seeds == [3, 8]
+    settings = flight_settings(config.flight, find_trajectory(config, "gusty@8")).disturbances
+    assert settings.gust_deviation.tolist() == [5.0, 5.0, 2.0]
+    assert settings.mass_deviation == 0.01
+    for name, reason in (("windy@1", "no trajectory 'windy'"), ("gusty@x", "must be a whole number")):
+        with pytest.raises(StudyError, match=reason):
+            find_trajectory(config, name)
