@@ -54,6 +54,16 @@ void bind_evaluate(py::module_& m) {
                                                  {"flight", result.flight_seconds}};
           },
           "wall clock");
+  m.def(
+      "library_versions",
+      [] {
+        return std::map<std::string, std::string>{{"Eigen", CODESIGN_EIGEN_VERSION},
+                                                  {"CGAL", CODESIGN_CGAL_VERSION},
+                                                  {"urdfdom", CODESIGN_URDFDOM_VERSION},
+                                                  {"compiler", CODESIGN_COMPILER},
+                                                  {"build type", CODESIGN_BUILD_TYPE}};
+      },
+      "What the module was built with.");
   m.def("evaluate", &evaluate, "parts"_a, "urdf"_a, "flight"_a,
         py::call_guard<py::gil_scoped_release>(),
         "Meshes and solves every part, loads the robot and flies it: the native half of the chain "

@@ -237,16 +237,20 @@ class ForearmJetSupport(Part):
         )
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
-        """Arcs inside the fillets at both ends of the rod, and the rod itself."""
+        """Arcs inside the fillets at both ends of the rod, finest on the side of the ring, and the rod itself."""
         fine = settings.accuracy == "fine"
         base, fillet, growth, rod = (8.0, 0.35, 0.35, 4.0) if fine else (12.0, 0.5, 0.5, 5.0)
         start, end = self.rod_ends
         turn = np.radians(np.linspace(-20.0, 20.0, 9))
-        arc = (self.rod_radius + 0.4 * MILLIMETRE) * np.column_stack([0.0 * turn, np.sin(turn), -np.cos(turn)])
         inside = np.array([0.8 * MILLIMETRE, 0.0, 0.0])
-        sources = [
-            fem.SizeSource(centre + arc, fillet * MILLIMETRE, growth, 0.6 * MILLIMETRE)
-            for centre in (start - inside, end + inside)
-        ]
+        sources = []
+        for side, edge in ((-1.0, fillet), (1.0, 2.0 * fillet)):
+            arc = (self.rod_radius + 0.4 * MILLIMETRE) * np.column_stack(
+                [0.0 * turn, np.sin(turn), side * np.cos(turn)]
+            )
+            sources += [
+                fem.SizeSource(centre + arc, edge * MILLIMETRE, growth, 0.6 * MILLIMETRE)
+                for centre in (start - inside, end + inside)
+            ]
         sources.append(fem.SizeSource(np.array([start, end]), rod * MILLIMETRE, growth, self.rod_radius))
         return fem.SizeField(base * MILLIMETRE, sources)

@@ -1,0 +1,92 @@
+"""The command line as a user meets it: exit codes, one JSON document, help with an example."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+COMMANDS = ("evaluate", "fly", "optimize", "resume", "runs", "report", "export", "new", "doctor")
+ORIGINAL = ("--set", "angle=15", "--set", "distance=42", "--set", "offset=80", "--set", "length=108")
+
+
+def codesign(*arguments: str, cwd=None) -> subprocess.CompletedProcess[str]:
+    command = (sys.executable, "-m", "codesign.cli", *arguments)
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=cwd)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_has_an_example(command):
+    result = codesign(command, "--help")
+    assert result.returncode == 0
+    assert "Example" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("evaluate", "--set", "angle=15"), "no value for design variable 'distance'"),
+        (("evaluate", *ORIGINAL, "--set", "wing=1"), "unknown design variable 'wing'"),
+        (("evaluate", "--set", "angle"), "expected NAME=NUMBER"),
+        (("evaluate", "--study", "nowhere", *ORIGINAL), "no such study"),
+        (("evaluate", *ORIGINAL, "--trajectory", "loop"), "no trajectory 'loop'"),
+        (("fly", "absent.urdf"), "absent.urdf"),
+        (("resume", "absent"), "absent"),
+        (("optimize", "--colour", "red"), "--colour"),
+    ],
+)
+def test_bad_input_is_exit_code_2_and_says_why(arguments, message, tmp_path):
+    result = codesign(*arguments, cwd=tmp_path)
+    assert result.returncode == 2, result.stderr
+    assert message in " ".join(result.stderr.split())
+    assert not list(tmp_path.iterdir())
+
+
+def test_bad_input_with_json_is_one_document():
+    result = codesign("evaluate", "--set", "angle=15", "--json")
+    assert result.returncode == 2
+    assert json.loads(result.stdout)["error"]["type"] == "DesignError"
+
+
+def test_evaluate_prints_the_document():
+    result = codesign("evaluate", *ORIGINAL, "--json")
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["status"] == "feasible"
+    assert document["design"] == {"angle": 15, "distance": 42, "offset": 80, "length": 108}
+
+
+def test_a_lost_flight_is_exit_code_1():
+    result = codesign(
+        "evaluate", *("--set", "angle=60", "--set", "distance=54", "--set", "offset=90", "--set", "length=74")
+    )
+    assert result.returncode == 1
+    assert "infeasible" in result.stdout
+
+
+def test_fly_published_robot_gives_the_published_objectives(shared_data):
+    result = codesign("fly", str(shared_data / "published" / "optim1.urdf"), "--as-published", "--json")
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    parts = document["objective_parts"]["script"]  # shared/data/published/README.md
+    assert parts["angular_momentum"] == pytest.approx(4.69508996, rel=1e-6)
+    assert parts["linear_momentum"] == pytest.approx(106.07285930, rel=1e-6)
+    assert document["objective_families"]["script"]["thrust"] == pytest.approx(656.84292784, rel=1e-6)
+
+
+def test_new_study_runs_from_its_folder_to_a_report(tmp_path):
+    assert codesign("new", str(tmp_path / "mine")).returncode == 0
+    arguments = ("--population", "4", "--generations", "2", "--out", str(tmp_path / "run"), "--no-cache", "--json")
+    result = codesign("optimize", "--study", str(tmp_path / "mine"), *arguments)
+    assert result.returncode == 0, result.stderr
+    assert json.loads(result.stdout)["designs"] == 8
+    listed = codesign("runs", str(tmp_path), "--json")
+    assert json.loads(listed.stdout)[0]["study"] == "gimbal_quad"
+    again = codesign("resume", str(tmp_path / "run"), "--json")
+    assert json.loads(again.stdout)["designs"] == 8
+
+
+def test_doctor_knows_what_is_there():
+    document = json.loads(codesign("doctor", "--json").stdout)
+    assert document["missing"] == []
+    assert document["libraries"]["CGAL"]
