@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "bindings/bind_flight_settings.hpp"
 #include "bindings/bindings.hpp"
 #include "bindings/py_model.hpp"
 #include "dynamics/box_qp.hpp"
@@ -19,23 +20,6 @@ namespace {
 
 using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
 using Vector = Eigen::Ref<const Eigen::VectorXd>;
-
-// Keyword constructor: every keyword is an attribute, an unknown one is a TypeError.
-template <typename Settings>
-void bind_keywords(py::class_<Settings>& settings) {
-  settings.def(py::init([](const py::kwargs& values) {
-    auto result = std::make_unique<Settings>();
-    const py::object self = py::cast(result.get(), py::return_value_policy::reference);
-    for (const auto& [name, value] : values) {
-      if (!py::hasattr(self, name)) {
-        throw py::type_error(std::string(py::str(py::type::of(self).attr("__name__"))) +
-                             " has no attribute '" + std::string(py::str(name)) + "'");
-      }
-      py::setattr(self, name, value);
-    }
-    return result;
-  }));
-}
 
 // Arguments checked as a person needs them checked; the solver itself answers with a status.
 BoxQpResult solve_checked(BoxQpSolver& solver, const Matrix& H, const Vector& g,
@@ -95,172 +79,6 @@ void bind_box_qp(py::module_& m) {
            "As solve_box_qp, warm-started from the last call.")
       .def("reset", &BoxQpSolver::reset, "Forget the last working set.")
       .def_property_readonly("size", &BoxQpSolver::size);
-}
-
-void bind_settings(py::module_& m) {
-  py::enum_<JetModel>(m, "JetModel", "Thrust dynamics of the jets.")
-      .value("integrator", JetModel::kIntegrator, "thrust is the sum of the commanded rates")
-      .value("turbine", JetModel::kTurbine, "second order, with throttle feedback linearisation");
-  py::enum_<Integrator>(m, "Integrator", "How the plant is advanced over a control step.")
-      .value("euler", Integrator::kEuler, "explicit, the published one")
-      .value("semi_implicit_euler", Integrator::kSemiImplicitEuler)
-      .value("runge_kutta_4", Integrator::kRungeKutta4, "fourth order on the Lie group");
-
-  py::class_<ContactPoint> contact(m, "ContactPoint", "A point whose height is watched.");
-  bind_keywords(contact);
-  contact.def_readwrite("frame", &ContactPoint::frame)
-      .def_readwrite("position", &ContactPoint::position, "(3,) in the frame [m]");
-
-  py::class_<CommandWindow> window(
-      m, "CommandWindow", "Pilot's command at samples with start < t < end; signs of the speeds.");
-  bind_keywords(window);
-  window.def_readwrite("start", &CommandWindow::start)
-      .def_readwrite("end", &CommandWindow::end)
-      .def_readwrite("front", &CommandWindow::front)
-      .def_readwrite("left", &CommandWindow::left)
-      .def_readwrite("up", &CommandWindow::up)
-      .def_readwrite("roll", &CommandWindow::roll)
-      .def_readwrite("pitch", &CommandWindow::pitch)
-      .def_readwrite("yaw", &CommandWindow::yaw);
-
-  py::class_<CommandSpeeds> speeds(m, "CommandSpeeds", "Change of the reference per second.");
-  bind_keywords(speeds);
-  speeds.def_readwrite("front", &CommandSpeeds::front, "[m/s]")
-      .def_readwrite("left", &CommandSpeeds::left, "[m/s]")
-      .def_readwrite("up", &CommandSpeeds::up, "[m/s]")
-      .def_readwrite("roll", &CommandSpeeds::roll, "[rad/s]")
-      .def_readwrite("pitch", &CommandSpeeds::pitch, "[rad/s]")
-      .def_readwrite("yaw", &CommandSpeeds::yaw, "[rad/s]");
-
-  py::class_<ReferenceSettings> reference(m, "ReferenceSettings", "From commands to references.");
-  bind_keywords(reference);
-  reference.def_readwrite("roll_min", &ReferenceSettings::roll_min, "[rad]")
-      .def_readwrite("roll_max", &ReferenceSettings::roll_max, "[rad]")
-      .def_readwrite("pitch_min", &ReferenceSettings::pitch_min, "[rad]")
-      .def_readwrite("pitch_max", &ReferenceSettings::pitch_max, "[rad]")
-      .def_readwrite("com_time", &ReferenceSettings::com_time, "[s]")
-      .def_readwrite("jerk_time", &ReferenceSettings::jerk_time, "[s]")
-      .def_readwrite("rotation_gain", &ReferenceSettings::rotation_gain, "[1/s]")
-      .def_readwrite("angular_velocity_time", &ReferenceSettings::angular_velocity_time, "[s]");
-}
-
-void bind_control_settings(py::module_& m) {
-  py::class_<Gains> gains(m, "Gains", "Gains of the momentum, attitude, posture and torque loops.");
-  bind_keywords(gains);
-  gains.def_readwrite("momentum_proportional", &Gains::momentum_proportional, "K_P")
-      .def_readwrite("momentum_derivative", &Gains::momentum_derivative, "K_D")
-      .def_readwrite("momentum_integral", &Gains::momentum_integral, "K_O, its inverse enters")
-      .def_readwrite("attitude_proportional", &Gains::attitude_proportional, "c0")
-      .def_readwrite("attitude_derivative", &Gains::attitude_derivative, "c1")
-      .def_readwrite("posture", &Gains::posture, "(joints,) K_s [1/s]")
-      .def_readwrite("torque_proportional", &Gains::torque_proportional, "k_P [1/s]")
-      .def_readwrite("torque_integral", &Gains::torque_integral, "k_I [1/s^2]")
-      .def_readwrite("turbine_rate", &Gains::turbine_rate, "[1/s]");
-
-  py::class_<Weights> weights(m, "Weights", "Weights of the momentum QP and the torque QP.");
-  bind_keywords(weights);
-  weights.def_readwrite("momentum", &Weights::momentum)
-      .def_readwrite("constant_inertia", &Weights::constant_inertia)
-      .def_readwrite("posture", &Weights::posture)
-      .def_readwrite("joint_velocity", &Weights::joint_velocity)
-      .def_readwrite("thrust_rate", &Weights::thrust_rate)
-      .def_readwrite("thrust_symmetry", &Weights::thrust_symmetry)
-      .def_readwrite("regularisation", &Weights::regularisation)
-      .def_readwrite("torque", &Weights::torque);
-
-  py::class_<Limits> limits(m, "Limits", "Ranges of joints, thrusts and torques.");
-  bind_keywords(limits);
-  limits.def_readwrite("joint_lower", &Limits::joint_lower, "(joints,) [rad], before scaling")
-      .def_readwrite("joint_upper", &Limits::joint_upper, "(joints,) [rad], before scaling")
-      .def_readwrite("joint_range_scale", &Limits::joint_range_scale, "(joints,)")
-      .def_readwrite("joint_speed", &Limits::joint_speed, "[rad/s]")
-      .def_readwrite("joint_slope", &Limits::joint_slope, "[1/rad]")
-      .def_readwrite("thrust_max", &Limits::thrust_max, "[N]")
-      .def_readwrite("thrust_rate", &Limits::thrust_rate, "[N/s]")
-      .def_readwrite("thrust_slope", &Limits::thrust_slope, "[1/N]")
-      .def_readwrite("torque", &Limits::torque, "[Nm]")
-      .def_readwrite("torque_rate", &Limits::torque_rate, "[Nm/s]");
-
-  py::class_<JointGroup> group(m, "JointGroup", "Joints of one term of the velocity objective.");
-  bind_keywords(group);
-  group.def_readwrite("name", &JointGroup::name)
-      .def_readwrite("joints", &JointGroup::joints)
-      .def_readwrite("weight", &JointGroup::weight);
-
-  py::class_<FailureLimits> failure(m, "FailureLimits", "The flight is lost beyond these.");
-  bind_keywords(failure);
-  failure.def_readwrite("com_error", &FailureLimits::com_error, "[m]")
-      .def_readwrite("attitude_error", &FailureLimits::attitude_error, "[rad]")
-      .def_readwrite("joint_speed", &FailureLimits::joint_speed, "[rad/s]");
-
-  py::class_<Turbine> turbine(
-      m, "Turbine",
-      "Second-order jet: T'' = f + g (U + B_UU U^2), f = K_T T + K_TT T^2 + K_D T' + K_DD T'^2 + "
-      "K_TD T T' + c, g = B_U + B_T T + B_D T'; thrust T [N], throttle U [%].");
-  bind_keywords(turbine);
-  turbine.def_readwrite("K_T", &Turbine::K_T)
-      .def_readwrite("K_TT", &Turbine::K_TT)
-      .def_readwrite("K_D", &Turbine::K_D)
-      .def_readwrite("K_DD", &Turbine::K_DD)
-      .def_readwrite("K_TD", &Turbine::K_TD)
-      .def_readwrite("B_U", &Turbine::B_U)
-      .def_readwrite("B_T", &Turbine::B_T)
-      .def_readwrite("B_D", &Turbine::B_D)
-      .def_readwrite("B_UU", &Turbine::B_UU)
-      .def_readwrite("c", &Turbine::c)
-      .def_readwrite("throttle_max", &Turbine::throttle_max, "[%]");
-
-  py::class_<Disturbances> disturbances(m, "Disturbances", "What the controller does not know.");
-  bind_keywords(disturbances);
-  disturbances
-      .def_readwrite("wind_force", &Disturbances::wind_force,
-                     "(3,) on the base's origin, world axes [N]")
-      .def_readwrite("gust_deviation", &Disturbances::gust_deviation,
-                     "(3,) standard deviation of the gusts [N]")
-      .def_readwrite("gust_time", &Disturbances::gust_time, "correlation time [s]")
-      .def_readwrite("mass_scale", &Disturbances::mass_scale, "plant's inertias over the model's")
-      .def_readwrite("mass_deviation", &Disturbances::mass_deviation,
-                     "relative standard deviation, drawn per body")
-      .def_readwrite("thrust_scale", &Disturbances::thrust_scale,
-                     "(jets,) plant's thrust over the jet's; empty: 1")
-      .def_readwrite("thrust_deviation", &Disturbances::thrust_deviation,
-                     "relative standard deviation, drawn per jet")
-      .def_readwrite("seed", &Disturbances::seed);
-}
-
-void bind_flight_settings(py::module_& m) {
-  py::class_<FlightSettings> settings(
-      m, "FlightSettings",
-      "Everything that decides a flight besides the robot; SI units. Vectors over joints have the "
-      "order of `joints`, vectors over jets that of `jets`. Assign lists and arrays whole.");
-  bind_keywords(settings);
-  settings.def_readwrite("step", &FlightSettings::step, "of the control loop [s]")
-      .def_readwrite("duration", &FlightSettings::duration, "[s]")
-      .def_readwrite("integrator", &FlightSettings::integrator)
-      .def_readwrite("substeps", &FlightSettings::substeps, "plant steps per control step")
-      .def_readwrite("joints", &FlightSettings::joints, "names")
-      .def_readwrite("jets", &FlightSettings::jets, "frames; thrust pushes along their -z")
-      .def_readwrite("base_pose", &FlightSettings::base_pose, "(4, 4)")
-      .def_readwrite("initial_joints", &FlightSettings::initial_joints, "(joints,) [rad]")
-      .def_readwrite("initial_thrusts", &FlightSettings::initial_thrusts, "(jets,) [N]")
-      .def_readwrite("initial_free_fall", &FlightSettings::initial_free_fall,
-                     "first step without jets and torques, as published")
-      .def_readwrite("jet_model", &FlightSettings::jet_model)
-      .def_readwrite("turbines", &FlightSettings::turbines, "one per jet")
-      .def_readwrite("command_speeds", &FlightSettings::command_speeds)
-      .def_readwrite("trajectory", &FlightSettings::trajectory, "list of CommandWindow")
-      .def_readwrite("reference", &FlightSettings::reference)
-      .def_readwrite("gains", &FlightSettings::gains)
-      .def_readwrite("weights", &FlightSettings::weights)
-      .def_readwrite("limits", &FlightSettings::limits)
-      .def_readwrite("symmetry_pairs", &FlightSettings::symmetry_pairs, "pairs of jet indices")
-      .def_readwrite("groups", &FlightSettings::groups, "list of JointGroup")
-      .def_readwrite("contact_points", &FlightSettings::contact_points)
-      .def_readwrite("ground_height", &FlightSettings::ground_height, "[m]")
-      .def_readwrite("failure", &FlightSettings::failure)
-      .def_readwrite("disturbances", &FlightSettings::disturbances)
-      .def("validate", &validate, "Raise ValueError naming the first attribute that is wrong.")
-      .def_property_readonly("samples", &sample_count, "number of samples of the flight");
 }
 
 // A history as an array that shares its memory with the log.
@@ -393,8 +211,6 @@ void bind_log(py::module_& m) {
 
 void bind_flight(py::module_& m) {
   bind_box_qp(m);
-  bind_settings(m);
-  bind_control_settings(m);
   bind_flight_settings(m);
   bind_log(m);
   m.def(

@@ -53,6 +53,7 @@ void validate_run(const FlightSettings& s) {
     refuse("duration", "is not a whole number of steps");
   }
   if (s.substeps < 1) refuse("substeps", "must be at least 1");
+  require_not_negative("rotation_deadband", s.rotation_deadband);
   if (!s.base_pose.allFinite() || rotation_error(s.base_pose.topLeftCorner<3, 3>()) > 1e-9 ||
       s.base_pose.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
     refuse("base_pose", "is not a rigid pose (rotation within 1e-9)");

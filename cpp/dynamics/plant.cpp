@@ -33,6 +33,7 @@ Plant::Plant(const Model& model, const FlightSettings& settings)
       integrator_(settings.integrator),
       substeps_(settings.substeps),
       step_(settings.step / settings.substeps),
+      rotation_deadband_(settings.rotation_deadband),
       has_model_masses_(settings.disturbances.mass_scale == 1.0 &&
                         settings.disturbances.mass_deviation == 0.0),
       thrust_scale_(thrust_scales(settings.disturbances, static_cast<int>(settings.jets.size()))),
@@ -78,6 +79,7 @@ bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const Plan
     if (integrator_ == Integrator::kEuler) rate_ = step_ * state.velocity;
     state.velocity += step_ * nu_dot_;
     if (integrator_ == Integrator::kSemiImplicitEuler) rate_ = step_ * state.velocity;
+    if (rate_.segment<3>(3).norm() < rotation_deadband_) rate_.segment<3>(3).setZero();
     displace(rate_, state);
   }
   return true;

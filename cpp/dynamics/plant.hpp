@@ -34,6 +34,7 @@ class Plant {
   Integrator integrator_;
   int substeps_;
   double step_;  // of one substep [s]
+  double rotation_deadband_;
   bool has_model_masses_;
   Eigen::VectorXd thrust_scale_, thrust_, force_, nu_dot_;
   RobotTerms terms_;  // at the inner stages
