@@ -23,16 +23,8 @@ class MotionFilter {
   const Output& update(const Eigen::Vector3d& input);
 
  private:
-  // Difference equation of one output: y_k = Σ b_i u_{k−i} − Σ_{i≥1} a_i y_{k−i}.
-  struct Channel {
-    double b[4];
-    Eigen::Vector3d past[3];
-  };
-  Eigen::Vector3d filtered(const Channel& channel, const Eigen::Vector3d& input) const;
-
-  double a_[4];
-  Channel value_, velocity_, acceleration_;
-  Eigen::Vector3d past_input_[3];
+  double step_, a_, b_, g_, implicit_;
+  Eigen::Vector3d third_derivative_ = Eigen::Vector3d::Zero();
   Output output_;
   bool started_ = false;
 };

@@ -1,0 +1,57 @@
+// The flight loop must not allocate: a flight ten times as long makes exactly as many allocations.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+
+#include "dynamics/flight.hpp"
+#include "flying_robot.hpp"
+
+namespace {
+std::atomic<long> allocation_count{0};
+}
+
+#ifndef __SANITIZE_ADDRESS__
+// Eigen and operator new both end in malloc: counting here sees everything.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  ++allocation_count;
+  return __libc_malloc(size);
+}
+#endif
+
+namespace codesign::dynamics {
+namespace {
+
+long allocations(const FlightSettings& settings, double duration) {
+  FlightSettings s = settings;
+  s.duration = duration;
+  const Model model = testing::model();
+  const long before = allocation_count;
+  const FlightLog log = simulate_flight(model, s);
+  EXPECT_EQ(log.status, FlightStatus::kCompleted);
+  return allocation_count - before;
+}
+
+class FlightAllocationTest : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(FlightAllocationTest, LoopDoesNotAllocate) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  FlightSettings settings = testing::settings();
+  settings.integrator = GetParam();
+  settings.disturbances.gust_deviation.setConstant(1.0);
+  const long brief = allocations(settings, 0.4);
+  EXPECT_GT(brief, 50);  // the counter works
+  EXPECT_EQ(allocations(settings, 4.0), brief);
+  settings.disturbances.mass_scale = 1.02;
+  settings.substeps = 2;
+  EXPECT_EQ(allocations(settings, 4.0), allocations(settings, 0.4));
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, FlightAllocationTest,
+                         ::testing::Values(Integrator::kEuler, Integrator::kRungeKutta4));
+
+}  // namespace
+}  // namespace codesign::dynamics
