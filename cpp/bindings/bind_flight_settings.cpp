@@ -46,8 +46,7 @@ std::unique_ptr<Settings> from_attributes(const py::dict& values) {
 // Constructor by keywords, copies, pickling and text, from the attributes bound afterwards.
 template <typename Settings>
 void bind_keywords(py::class_<Settings>& settings) {
-  settings
-      .def(py::init([](const py::kwargs& values) { return from_attributes<Settings>(values); }))
+  settings.def(py::init([](const py::kwargs& values) { return from_attributes<Settings>(values); }))
       .def("__copy__", [](const Settings& self) { return Settings(self); })
       .def("__deepcopy__", [](const Settings& self, const py::dict&) { return Settings(self); })
       .def(py::pickle([](const py::object& self) { return attributes(self); },

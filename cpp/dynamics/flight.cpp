@@ -261,7 +261,8 @@ FlightLog Flight::run() {
     if (!state_.velocity.allFinite() || !state_.joints.allFinite() || !thrust_.allFinite()) {
       reason = FailureReason::kNotFinite;
     }
-    if (reason == FailureReason::kNotFailed && !update_dynamics()) reason = FailureReason::kSingularMass;
+    if (reason == FailureReason::kNotFailed && !update_dynamics())
+      reason = FailureReason::kSingularMass;
     if (reason == FailureReason::kNotFailed) reason = control(k);
     if (reason == FailureReason::kNotFailed) {
       reason = check_limits();

@@ -23,7 +23,7 @@ struct MountedJet {
   std::vector<int> chain;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();    // unit vector along which thrust pushes
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // from the base origin [m]
-  Eigen::Vector3d arm = Eigen::Vector3d::Zero();  // from the centre of mass [m]
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();     // from the centre of mass [m]
 };
 
 // All that a control step needs to know of the robot at one state. Allocated once; written by

@@ -41,7 +41,9 @@ def evaluate(study: Study, design: Design, trajectory: str | None = None, cache:
     """One design through the whole chain.
 
     A CodesignError on the way (no mesh, say) gives a failed evaluation; anything else is a bug and is raised.
+    Raises: StudyError if there is no such trajectory.
     """
+    _trajectory(study.config, trajectory)
     try:
         return _evaluate(study, design, trajectory, cache)
     except CodesignError as error:

@@ -3,7 +3,8 @@
 #include "dynamics/urdf.hpp"
 #include "fem/mass_properties.hpp"
 
-// Prints the mass of a one-link robot and the volume of a tetrahedron with three unit edges: 2 and 1/6.
+// Prints the mass of a one-link robot and the volume of a tetrahedron with three unit edges: 2 and
+// 1/6.
 int main() {
   const codesign::dynamics::Model model = codesign::dynamics::load_urdf(
       "<robot name='ball'><link name='ball'><inertial><mass value='2'/>"

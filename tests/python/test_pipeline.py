@@ -43,7 +43,7 @@ def test_document_has_every_promised_key(original):
     document = json.loads(original.to_json())
     assert document["design"] == ORIGINAL
     assert set(document["objectives"]) == {"momentum", "joint_velocity", "thrust"}
-    assert set(document["constraints"]) == {"safety_factor", "qp_failures"}
+    assert {"safety_factor", "qp_failures"} <= set(document["constraints"])
     for part in ("jetpack_bracket", "forearm_support"):
         assert {
             *("mass", "com", "inertia", "safety_factor", "peak_stress", "stress_50", "stress_error"),

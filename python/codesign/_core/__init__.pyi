@@ -8,7 +8,16 @@ import typing
 from . import dynamics
 from . import fem
 
-__all__: list[str] = ["DesignResult", "PartAnalysis", "PartCase", "analyse_part", "dynamics", "evaluate", "fem"]
+__all__: list[str] = [
+    "DesignResult",
+    "PartAnalysis",
+    "PartCase",
+    "analyse_part",
+    "dynamics",
+    "evaluate",
+    "fem",
+    "library_versions",
+]
 
 class PartCase:
     """
@@ -63,4 +72,9 @@ def analyse_part(part: PartCase) -> PartAnalysis:
 def evaluate(parts: collections.abc.Sequence[PartCase], urdf: str, flight: dynamics.FlightSettings) -> DesignResult:
     """
     Meshes and solves every part, loads the robot and flies it: the native half of the chain in one call, without the GIL.
+    """
+
+def library_versions() -> dict[str, str]:
+    """
+    What the module was built with.
     """
