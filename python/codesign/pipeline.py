@@ -43,7 +43,7 @@ def evaluate(study: Study, design: Design, trajectory: str | None = None, cache:
     A CodesignError on the way (no mesh, say) gives a failed evaluation; anything else is a bug and is raised.
     Raises: StudyError if there is no such trajectory.
     """
-    _trajectory(study.config, trajectory)
+    find_trajectory(study.config, trajectory or study.config.flight.trajectory)
     try:
         return _evaluate(study, design, trajectory, cache)
     except CodesignError as error:
