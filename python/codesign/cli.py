@@ -20,6 +20,7 @@ from codesign.errors import CodesignError, DesignError, StudyError
 
 if TYPE_CHECKING:
     from codesign.evaluation import Evaluation
+    from codesign.optimization import Resources
     from codesign.runs import Run
 
 app = typer.Typer(
@@ -154,8 +155,12 @@ def optimize(
 
     loaded = load_study(study)
     folder = out_dir or Path("runs") / f"{loaded.name}-{datetime.now(UTC):%Y%m%d-%H%M%S}"
+    resources: Resources = {"workers": workers, "cluster": cluster}
+    if no_cache:
+        resources["cache"] = None
     try:
         with ProgressBar(loaded.name) as bar:
+            resources["progress"] = bar
             run = run_optimize(
                 loaded,
                 out=folder,
@@ -163,14 +168,11 @@ def optimize(
                 generations=generations,
                 seed=seed,
                 algorithm=algorithm,
-                workers=workers,
-                cluster=cluster,
                 start=start,
                 steady=steady,
                 wall_time=wall_time,
                 stall_generations=stall_generations,
-                cache=None if no_cache else "default",
-                progress=bar,
+                **resources,
             )
     except ValueError as error:
         raise StudyError(str(error)) from error

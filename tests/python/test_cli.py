@@ -74,11 +74,13 @@ def test_fly_published_robot_gives_the_published_objectives(shared_data):
     assert document["objective_families"]["script"]["thrust"] == pytest.approx(656.84292784, rel=1e-6)
 
 
-def test_new_study_runs_from_its_folder_to_a_report(tmp_path):
+def test_new_study_runs_from_its_folder(tmp_path, monkeypatch):
     assert codesign("new", str(tmp_path / "mine")).returncode == 0
-    arguments = ("--population", "4", "--generations", "2", "--out", str(tmp_path / "run"), "--no-cache", "--json")
-    result = codesign("optimize", "--study", str(tmp_path / "mine"), *arguments)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    arguments = ("--population", "4", "--generations", "2", "--out", str(tmp_path / "run"), "--json")
+    result = codesign("optimize", "--study", str(tmp_path / "mine"), *arguments, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["cache", "mine", "run"]
     assert json.loads(result.stdout)["designs"] == 8
     listed = codesign("runs", str(tmp_path), "--json")
     assert json.loads(listed.stdout)[0]["study"] == "gimbal_quad"
