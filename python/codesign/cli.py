@@ -299,6 +299,43 @@ def new(folder: Annotated[Path, typer.Argument(help="New folder for the study.")
     return 0
 
 
+@app.command(epilog="Example: `codesign validate runs/a --designs recommended --designs best`")
+def validate(
+    run_dir: RunArgument,
+    designs: Annotated[list[str] | None, typer.Option(help="recommended, best, front, spread:N or a number.")] = None,
+    trajectories: Annotated[list[str] | None, typer.Option(help="Of the study; default: its [validation].")] = None,
+    seeds: Annotated[int, typer.Option(min=0, help="Disturbed repetitions of each flight.")] = 5,
+    workers: WorkersOption = None,
+) -> int:
+    """Flies chosen designs and the original on validation trajectories; the report shows the result."""
+    from codesign.validation import DEFAULT_DESIGNS
+    from codesign.validation import validate as run_validate
+
+    run_validate(run_dir, designs or DEFAULT_DESIGNS, trajectories or None, seeds=seeds, workers=workers)
+    out.print(f"validated; show it with: codesign report {run_dir}", soft_wrap=True)
+    return 0
+
+
+@app.command(epilog="Example: `codesign view runs/a`")
+def view(
+    run_dir: Annotated[Path | None, typer.Argument(metavar="[DIR]", help="Folder of a run.")] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A design instead.")] = None,
+    study: StudyOption = DEFAULT_STUDY,
+    trajectory: TrajectoryOption = None,
+    port: Annotated[int, typer.Option(help="Of the page on this machine.")] = 8080,
+) -> int:
+    """3-D viewer in the browser: robot, parts coloured by stress, flight playback. Ctrl-C ends it."""
+    from codesign.study import load_study
+    from codesign.viewer import view as start_view
+
+    if (run_dir is None) == (not set_):
+        raise DesignError("view needs either the folder of a run or a design by --set")
+    design = parse_design(set_) if set_ else None
+    shown = load_study(study) if design else None
+    start_view(shown, design, run_directory=run_dir, trajectory=trajectory, port=port).wait()
+    return 0
+
+
 @app.command(epilog="Example: `codesign doctor`")
 def doctor(as_json: JsonOption = False) -> int:
     """Versions, BLAS in use, cores, and what is missing."""

@@ -67,9 +67,13 @@ class PartConfig(Section, frozen=True, kw_only=True):
 
 
 class RobotConfig(Section, frozen=True, kw_only=True):
-    """The robot that the parts are built into; path relative to study.toml."""
+    """The robot that the parts are built into; path relative to study.toml.
+
+    visuals: package:// path of a URDF with the same links, whose meshes pictures show where its package is installed.
+    """
 
     urdf: str
+    visuals: str = ""
 
 
 class FemConfig(Section, frozen=True, kw_only=True):

@@ -24,10 +24,16 @@ def open_browser() -> Iterator[Any]:
 
 @contextmanager
 def visit(
-    browser: Any, address: str, *, width: int = 1280, dark: bool = False, local: tuple[str, ...] = ("file:",)
+    browser: Any,
+    address: str,
+    *,
+    width: int = 1280,
+    height: int = 800,
+    dark: bool = False,
+    local: tuple[str, ...] = ("file:",),
 ) -> Iterator[Any]:
     """Opens a page; afterwards checks that it logged no error and asked nobody else for anything."""
-    page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme="dark" if dark else "light")
+    page = browser.new_page(viewport={"width": width, "height": height}, color_scheme="dark" if dark else "light")
     problems: list[str] = []
     page.on("console", lambda m: problems.append(f"console: {m.text}") if m.type == "error" else None)
     page.on("pageerror", lambda error: problems.append(f"exception: {error}"))

@@ -33,8 +33,8 @@ def history(duration: float = 42.0) -> FlightHistory:
         "base_position": np.stack([0.1 * time, 0 * time, 0.8 + 0.05 * time], 1),
         "base_rotation": np.broadcast_to(np.eye(3), (len(time), 3, 3)),
         "joint_positions": np.zeros((len(time), 23)),
-        "com": np.zeros((len(time), 3)),
-        "com_reference": np.zeros((len(time), 3)),
+        "com": np.stack([0.1 * time, 0 * time, 0.8 + 0.05 * time], 1),
+        "com_reference": np.stack([0.1 * time, 0 * time, 0.8 + 0.05 * time], 1),
         "qp_iterations": np.ones((len(time), 2)),
         "active_bounds": 4 * np.ones(len(time)),
     }

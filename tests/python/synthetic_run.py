@@ -8,6 +8,7 @@ import numpy as np
 
 from codesign.design import DesignSpace, Variable
 from codesign.evaluation import Evaluation
+from codesign.execute import StudyRef
 from codesign.store import Record, RunStore
 from codesign.study import load_study
 
@@ -137,13 +138,15 @@ class Study:
         return evaluate(dict(design))
 
 
-def write_run(folder: Path, finished: list[Evaluation], *, planned: int | None = None, ended: bool = True) -> Path:
-    """A run's store holding `finished` evaluations of `planned`."""
-    variables = [asdict(variable) for variable in SPACE.variables]
+def write_run(
+    folder: Path, finished: list[Evaluation], *, planned: int | None = None, ended: bool = True, study: Any = None
+) -> Path:
+    """A run's store holding `finished` evaluations of `planned`; study: whose run it says to be."""
+    ref = StudyRef.of(study) if study is not None else StudyRef("synthetic", Study.hash)
     settings = {"algorithm": "nsga2", "seed": 1, "population": 25, "evaluations": planned or len(finished)}
     meta = {
-        "study": {"name": "synthetic", "source": "synthetic", "loader": "", "hash": Study.hash},
-        "variables": variables,
+        "study": {"name": "synthetic", "source": ref.source, "loader": ref.loader, "hash": ref.hash},
+        "variables": [asdict(variable) for variable in SPACE.variables],
         "objectives": list(Study.objectives),
         "settings": settings,
         "cache": None,
@@ -154,7 +157,7 @@ def write_run(folder: Path, finished: list[Evaluation], *, planned: int | None =
         )
         grids = [SPACE.indices(evaluation.design) for evaluation in finished]
         store.enqueue(
-            [(k, k // 25, g, e.design) for k, (g, e) in enumerate(zip(grids, finished, strict=True))], Study.hash
+            [(k, k // 25, g, e.design) for k, (g, e) in enumerate(zip(grids, finished, strict=True))], ref.hash
         )
         with store.transaction():
             for k, (grid, evaluation) in enumerate(zip(grids, finished, strict=True)):

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-COMMANDS = ("evaluate", "fly", "optimize", "resume", "runs", "report", "export", "new", "doctor")
+COMMANDS = ("evaluate", "fly", "optimize", "resume", "runs", "report", "validate", "view", "export", "new", "doctor")
 ORIGINAL = ("--set", "angle=15", "--set", "distance=42", "--set", "offset=80", "--set", "length=108")
 
 
@@ -32,6 +32,8 @@ def test_help_has_an_example(command):
         (("evaluate", *ORIGINAL, "--trajectory", "loop"), "no trajectory 'loop'"),
         (("fly", "absent.urdf"), "absent.urdf"),
         (("resume", "absent"), "absent"),
+        (("validate", "absent"), "absent"),
+        (("view",), "either the folder of a run or a design"),
         (("optimize", "--colour", "red"), "--colour"),
     ],
 )

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yourdfpy
 from numpy.typing import NDArray
 
+from codesign.report.link_meshes import LinkMesh, link_meshes, package_paths
 from codesign.transforms import Matrix
 from codesign.urdf import RobotDescription
 
@@ -64,11 +66,17 @@ class RobotScene:
         return {link: root @ pose for link, pose in local.items()}
 
 
-def robot_scene(study: Any, design: Mapping[str, float], fields: Mapping[str, Any] | None = None) -> RobotScene:
+def robot_scene(
+    study: Any,
+    design: Mapping[str, float],
+    fields: Mapping[str, Any] | None = None,
+    packages: tuple[Path, ...] | None = None,
+) -> RobotScene:
     """The robot with a design's parts.
 
     Args:
         fields: part -> `details.StressField`: drawn instead of the part's surface, its stress as the pieces' values.
+        packages: folders where the robot's real link meshes are looked for; by default those of `package_paths`.
     Raises: CodesignError if a part or the robot cannot be built.
     """
     checked = study.space.design(design)
@@ -78,15 +86,39 @@ def robot_scene(study: Any, design: Mapping[str, float], fields: Mapping[str, An
     placed: dict[str, list[Piece]] = {}
     for part in config.parts:
         for place in part.placements:
-            placed.setdefault(place.link, []).append(
-                _part_piece(part.name, parts[part.name], place, (fields or {}).get(part.name))
-            )
-    pieces: list[Piece] = []
+            piece = _part_piece(part.name, parts[part.name], place, (fields or {}).get(part.name))
+            placed.setdefault(place.link, []).append(piece)
+    real = _real_shapes(
+        robot, frozenset(placed), config.robot.visuals, package_paths() if packages is None else packages
+    )
     colours = _materials(robot)
+    pieces: list[Piece] = []
     for link in robot.link_names:
-        pieces += placed.get(link) or _link_pieces(robot, link, colours)
+        own = _link_pieces(robot, link, colours)
+        if own and link in real:
+            own = [Piece(link, points, triangles, own[0].colour) for points, triangles in real[link]]
+        pieces += placed.get(link) or own
     joints = tuple(joint for group in config.flight.joint_groups for joint in group.joints)
     return RobotScene(robot, tuple(pieces), tuple(config.flight.jets.frames), joints)
+
+
+def _real_shapes(
+    robot: RobotDescription, parts: frozenset[str], visuals: str, packages: tuple[Path, ...]
+) -> dict[str, list[LinkMesh]]:
+    """Real meshes of the links, in this robot's link axes.
+
+    The model that they come from may define a link's axes otherwise; both robots stand alike when all joints are at
+    zero, but for what hangs from the design's `parts`.
+    """
+    found = link_meshes(visuals, packages)
+    ours = robot.frame_poses()
+    moved = with_descendants(robot, parts)
+    shapes: dict[str, list[LinkMesh]] = {}
+    for link, meshes in found.meshes.items():
+        if link in ours:
+            turn = np.eye(4) if link in moved else np.linalg.inv(ours[link]) @ found.poses[link]
+            shapes[link] = [(points @ turn[:3, :3].T + turn[:3, 3], triangles) for points, triangles in meshes]
+    return shapes
 
 
 def _part_piece(name: str, part: Any, place: Any, stress: Any) -> Piece:
@@ -102,6 +134,19 @@ def _part_piece(name: str, part: Any, place: Any, stress: Any) -> Piece:
     return Piece(
         place.link, points @ pose[:3, :3].T + pose[:3, 3], triangles.astype(np.int64), part=name, values=values
     )
+
+
+def with_descendants(robot: RobotDescription, links: Iterable[str]) -> set[str]:
+    """The links and all that hang from them."""
+    children: dict[str, list[str]] = {}
+    for joint in robot.joint_names:
+        children.setdefault(robot.joint_parent(joint), []).append(str(robot.joint(joint).child))
+    found, pending = set(links), list(links)
+    while pending:
+        below = children.get(pending.pop(), [])
+        found.update(below)
+        pending += below
+    return found
 
 
 def _materials(robot: RobotDescription) -> dict[str, tuple[float, float, float]]:

@@ -19,6 +19,7 @@ from codesign.report.figures.solids import hero
 from codesign.report.page.encode import page_detail
 from codesign.report.page.html import render
 from codesign.report.reading import read_report_data, same_study, study_of
+from codesign.report.validation import load_validation
 
 logger = logging.getLogger(__name__)
 
@@ -55,9 +56,9 @@ def write_report(
             run = replace(run, baseline=current.evaluate(current.baseline))
         compute_details(current, run)
     details = load_details(directory)
-    data = FigureData(run, details, current)
+    data = FigureData(run, details, current, load_validation(directory))
     shown = {key: page_detail(detail) for key, detail in _shown(run, details).items()}
-    page = _write(directory / PAGE, render(run, shown, picture=_picture(data)))
+    page = _write(directory / PAGE, render(run, shown, picture=_picture(data), validation=data.validation))
     return ReportPaths(page, write_figures(data, directory / FIGURE_FOLDER) if figures else ())
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from codesign.errors import CodesignError
-from codesign.report.figures import designs, flights, fronts, search, solids
+from codesign.report.figures import designs, flights, fronts, robustness, search, solids
 from codesign.report.figures.data import FigureData
 from codesign.report.figures.style import style
 
@@ -34,6 +34,9 @@ FIGURES = (
     FigureKind("spider", "Chosen designs: parameters over their bounds, objectives over their range.", designs.spider),
     FigureKind("parallel", "Parameters and objectives of all feasible designs.", designs.parallel),
     FigureKind("convergence", "Growth of the front, and outcomes, over the search.", search.convergence),
+    FigureKind(
+        "validation", "Change of each objective on flights that the search has not seen.", robustness.validation
+    ),
     FigureKind("stress", "Stress on the parts of the original and the recommended design.", solids.stress),
     FigureKind("flight", "Flight of the recommended design; grey bands: the pilot commands.", flights.histories),
     FigureKind("snapshots", "The flight of the recommended design at equal times.", solids.snapshots),

@@ -14,7 +14,7 @@ from codesign.report.figures import style
 from codesign.report.figures.data import FigureData
 from codesign.report.figures.flights import sample_at
 from codesign.report.raster import Array, Body, View, fitting_view, render
-from codesign.report.scene import RobotScene, robot_scene
+from codesign.report.scene import RobotScene, robot_scene, with_descendants
 from codesign.transforms import Matrix
 
 PART_VIEW = (-55.0, 28.0)  # azimuth, elevation [deg]
@@ -99,10 +99,8 @@ def hero(data: FigureData, width: int = 460, height: int = 560) -> NDArray[np.ui
 def close_up(scene: RobotScene, joints: Array | None, base: Matrix) -> tuple[list[Body], list[Body]]:
     """All bodies of the robot; those that must be in the picture: the parts and what they carry."""
     bodies = robot_bodies(scene, joints, base)
-    carried = {piece.link for piece in scene.pieces if piece.part is not None} | set(scene.jets)
-    for joint in scene.robot.joint_names:
-        if scene.robot.joint_parent(joint) in carried:
-            carried.add(scene.robot.joint(joint).child)
+    parts = {piece.link for piece in scene.pieces if piece.part is not None}
+    carried = with_descendants(scene.robot, parts | set(scene.jets))
     return bodies, [body for body, piece in zip(bodies, scene.pieces, strict=True) if piece.link in carried]
 
 

@@ -77,14 +77,3 @@ function frontControls() {
     });
   }
 }
-
-/** Best feasible hypervolume by evaluation. */
-function drawProgress() {
-  const plot = element('progress');
-  if (!plot) return;
-  const steps = report.progress;
-  Plotly.react(plot, [{
-    type: 'scatter', mode: 'lines', x: steps.count, y: steps.volume, line: {color: colour('accent'), width: 2, shape: 'hv'},
-    hovertemplate: 'after %{x} designs: %{y:.1%}<extra></extra>',
-  }], layout({xaxis: axis('Designs evaluated', {rangemode: 'tozero'}), yaxis: axis('Front found', {tickformat: '.0%', range: [0, 1.04]}), hovermode: 'x'}), settings);
-}

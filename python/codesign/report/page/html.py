@@ -14,8 +14,10 @@ from codesign.report.data import ReportData
 from codesign.report.page.document import page_document
 from codesign.report.page.sections import sections
 from codesign.report.page.summary import summary
+from codesign.report.page.validation import strips
+from codesign.report.validation import Validation
 
-SCRIPTS = ("base.js", "front.js", "table.js", "design.js", "main.js")
+SCRIPTS = ("base.js", "front.js", "table.js", "design.js", "search.js", "main.js")
 
 
 def render(
@@ -23,11 +25,12 @@ def render(
     details: dict[str, Any] | None = None,
     files: dict[str, Any] | None = None,
     picture: bytes | None = None,
+    validation: Validation | None = None,
 ) -> str:
     """The whole page as one HTML text that loads nothing from anywhere.
 
     details, files: by `details.detail_key`; fields and histories of designs, what can be downloaded of them.
-    picture: PNG of the robot with the recommended design's parts.
+    picture: PNG of the robot with the recommended design's parts.   validation: flights that the search has not seen.
     """
     from plotly.offline import get_plotlyjs
 
@@ -35,7 +38,7 @@ def render(
     read = {
         name: folder.joinpath(name).read_text(encoding="utf-8") for name in ("template.html", "style.css", *SCRIPTS)
     }
-    blocks = sections(run)
+    blocks = sections(run, validation)
     return Template(read["template.html"]).substitute(
         version=escape(codesign.__version__),
         title=escape(run.title),
@@ -45,7 +48,7 @@ def render(
         summary=summary(run, picture),
         sections="\n".join(block.html for block in blocks),
         footer=f"<p>Made by codesign {escape(codesign.__version__)}. This file is complete: it needs no network.</p>",
-        data=_json(page_document(run, details, files)),
+        data=_json(page_document(run, details, files) | {"validation": strips(run, validation)}),
         plotly=get_plotlyjs(),
         script="\n".join(read[name] for name in SCRIPTS),
     )

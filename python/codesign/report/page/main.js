@@ -43,6 +43,7 @@ function paint(theme) {
   document.documentElement.dataset.theme = theme;
   drawFront();
   whenVisible(element('progress'), drawProgress);
+  whenVisible(element('validation-chart'), drawValidation);
   if (known(state.selected)) { drawParts(state.selected); drawFlight(state.selected); }
 }
 

@@ -7,6 +7,8 @@ from html import escape
 
 from codesign.report.data import ReportData, reasons
 from codesign.report.data import words as spelled
+from codesign.report.page.validation import validation_tables
+from codesign.report.validation import Validation
 
 SHOWN_IDS = 8  # of designs that share a reason
 ANNOUNCEMENT = '<p id="announcement" role="status" aria-live="polite" class="skip"></p>'
@@ -29,7 +31,7 @@ class Block:
     html: str
 
 
-def sections(run: ReportData) -> list[Block]:
+def sections(run: ReportData, validation: Validation | None = None) -> list[Block]:
     """The sections that have something to show."""
     found = []
     if run.front:
@@ -38,6 +40,8 @@ def sections(run: ReportData) -> list[Block]:
         found.append(_block("design", "Design", "Selected design", "", CARD + ANNOUNCEMENT))
     if run.entries:
         found += [_parts_and_flight(), _designs(run)]
+    if validation is not None:
+        found.append(_validation(run, validation))
     if len(run.front) > 1:
         found.append(_search())
     if reasons(run):
@@ -99,6 +103,18 @@ def _designs(run: ReportData) -> Block:
     against = " Percentages compare with the original." if run.baseline_vector is not None else ""
     text = f"Sort by a column’s head; select with a click or with the arrow keys.{against}"
     return _block("designs", "All designs", "All designs", text, body, controls)
+
+
+def _validation(run: ReportData, validation: Validation) -> Block:
+    size = validation.disturbance
+    text = (
+        "Chosen designs on trajectories that the search has not seen, each against the original on the same flight; in "
+        f"disturbed flights with gusts of {size.gust:g} N and errors of {100 * size.mass:g} % in the mass of each body "
+        f"and {100 * size.thrust:g} % in the thrust of each jet (standard deviations, the same seeds for all designs)."
+    )
+    chart = '<div id="validation-chart" role="img" aria-label="Change of each objective, flight by flight"></div>'
+    body = chart + validation_tables(run, validation)
+    return _block("validation", "Validation", "Validation", text, body)
 
 
 def _search() -> Block:

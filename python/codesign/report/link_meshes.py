@@ -1,0 +1,85 @@
+"""Real link meshes of a robot, where its model package is installed: what pictures show instead of plain shapes."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from codesign.errors import UrdfError
+from codesign.transforms import Matrix
+from codesign.urdf import RobotDescription
+from codesign.urdf_package import resolve_mesh
+
+# Where packages are looked for: variable -> folder below each of its entries that holds packages.
+SEARCH_PATHS = {
+    "ROS_PACKAGE_PATH": "", "AMENT_PREFIX_PATH": "share", "CMAKE_PREFIX_PATH": "share", "GAZEBO_MODEL_PATH": "",
+    "GZ_SIM_RESOURCE_PATH": "", "IGN_GAZEBO_RESOURCE_PATH": "",
+}  # fmt: skip
+
+LinkMesh = tuple[Any, Any]  # points (n, 3) [m] in link axes, triangles (m, 3)
+
+
+def package_paths(environment: Mapping[str, str] | None = None) -> tuple[Path, ...]:
+    """Folders that hold packages, by the usual variables of ROS, colcon and Gazebo."""
+    environment = os.environ if environment is None else environment
+    found = [
+        Path(entry) / below
+        for variable, below in SEARCH_PATHS.items()
+        for entry in environment.get(variable, "").split(os.pathsep)
+        if entry
+    ]
+    return tuple(dict.fromkeys(path for path in found if path.is_dir()))
+
+
+@dataclass(frozen=True, slots=True)
+class LinkMeshes:
+    """meshes: link -> its solids in link axes. poses: root_T_link (4, 4) of that model, all joints at zero."""
+
+    meshes: dict[str, list[LinkMesh]]
+    poses: dict[str, Matrix]
+
+
+@functools.lru_cache(maxsize=4)
+def link_meshes(visuals: str, packages: tuple[Path, ...]) -> LinkMeshes:
+    """Meshes of the links of the URDF `visuals` (package://…); none if its package is not found.
+
+    A link whose mesh is missing or unreadable is left out, so that its plain shape is shown.
+    """
+    nothing = LinkMeshes({}, {})
+    if not visuals or not packages:
+        return nothing
+    try:
+        path = resolve_mesh(visuals, packages=packages)
+        robot = RobotDescription.load(path, as_published=True)
+    except UrdfError:
+        return nothing
+    found: dict[str, list[LinkMesh]] = {}
+    for link in robot.link_names:
+        for visual in robot.link(link).visuals:
+            if visual.geometry is not None and visual.geometry.mesh is not None:
+                mesh = _read(visual, path.parent, packages)
+                if mesh is not None:
+                    found.setdefault(link, []).append(mesh)
+    return LinkMeshes(found, robot.frame_poses())
+
+
+def _read(visual: Any, folder: Path, packages: tuple[Path, ...]) -> LinkMesh | None:
+    import trimesh
+
+    mesh = visual.geometry.mesh
+    try:
+        loaded = trimesh.load_mesh(resolve_mesh(mesh.filename, folder, packages))
+    except (UrdfError, OSError, ValueError):
+        return None
+    if not isinstance(loaded, trimesh.Trimesh) or not len(loaded.faces):
+        return None
+    scale = np.ones(3) if mesh.scale is None else np.broadcast_to(np.asarray(mesh.scale, dtype=float), 3)
+    origin = np.eye(4) if visual.origin is None else visual.origin
+    points = np.asarray(loaded.vertices) * scale @ origin[:3, :3].T + origin[:3, 3]
+    return points, np.asarray(loaded.faces, dtype=np.int64)
