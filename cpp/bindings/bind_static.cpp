@@ -95,6 +95,12 @@ void bind_result(py::module_& m) {
       .def_readonly("max_displacement", &StaticResult::max_displacement, "m")
       .def_readonly("peak_stress", &StaticResult::peak_stress, "Pa")
       .def_readonly("peak_position", &StaticResult::peak_position, "(3) m")
+      .def_readonly("stress_error", &StaticResult::stress_error,
+                    "Pa, estimated error of peak_stress")
+      .def_readonly("energy_error", &StaticResult::energy_error,
+                    "estimated relative error in the energy norm")
+      .def_readonly("element_error", &StaticResult::element_error,
+                    "(m) Pa, difference of element and recovered stress")
       .def_readonly("stress_50", &StaticResult::stress_50, "Pa")
       .def_readonly("safety_factor", &StaticResult::safety_factor)
       .def_readonly("residual", &StaticResult::residual, "relative, over the free components")

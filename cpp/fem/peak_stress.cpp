@@ -93,4 +93,18 @@ PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExc
   return peak;
 }
 
+double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
+                         const RecoveryError& recovery, const PeakStress& peak) {
+  constexpr double kShare = 0.4;
+  double largest = 0.0;
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    bool touches = false;
+    for (int i = 0; i < 4; ++i) {
+      for (int k = 0; k < 3; ++k) touches |= mesh.tets(e, i) == mesh.boundary(peak.triangle, k);
+    }
+    if (touches) largest = std::max(largest, recovery.element[e]);
+  }
+  return recovery_spread(mesh, points, peak.triangle, peak.reference) + kShare * largest;
+}
+
 }  // namespace codesign::fem

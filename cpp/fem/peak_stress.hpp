@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fem/recovery.hpp"
 #include "fem/stress.hpp"
 #include "fem/tet_mesh.hpp"
 
@@ -27,5 +28,12 @@ struct PeakStress {
 // Largest von Mises stress of the nodal stress interpolated over the boundary faces, sampled at 66
 // points a face. Throws std::invalid_argument if the exclusion leaves no point.
 PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExclusion& exclusion);
+
+// Estimated error (Pa) of the peak stress: the spread of the recovery there plus 0.4 times the
+// largest root mean square difference between finite-element and recovered stress over the elements
+// around the face. The sum was fitted once to notches of known stress and checked on the study's
+// parts (docs/fem.md); it is an estimate, not a bound.
+double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
+                         const RecoveryError& recovery, const PeakStress& peak);
 
 }  // namespace codesign::fem

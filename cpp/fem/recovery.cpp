@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "fem/incidence.hpp"
@@ -13,8 +14,10 @@ namespace codesign::fem {
 namespace {
 
 constexpr std::size_t kMinPatch = 10;  // elements
-// Weight of a point at distance r (over the patch radius): (r² + kCore)^-2.
+// Weight of a point at distance r (over the patch radius): (r² + kCore)^(-exponent / 2). A small
+// exponent smooths, a large one follows the nearest points.
 constexpr double kCore = 0.01;
+constexpr double kExponent = 3.0, kSmoothExponent = 2.0, kSharpExponent = 4.0;
 // Holds the quadratic terms where a patch does not determine them.
 constexpr double kRidge = 1e-10;
 
@@ -99,17 +102,27 @@ class PatchFinder {
   std::size_t core_ = 0;
 };
 
+// A quadratic stress around a corner node.
+struct PatchField {
+  Eigen::Vector3d origin;
+  double radius;
+  Coefficients coefficients;
+
+  Eigen::Matrix<double, 1, 6> at(const Eigen::Vector3d& x) const {
+    return quadratic_basis((x - origin) / radius).transpose() * coefficients;
+  }
+};
+
 // Weighted least-squares fit around the origin, coordinates divided by the radius.
 Coefficients fit(const std::vector<int>& patch, const Points& x, const Stresses& stress,
-                 const Eigen::Vector3d& origin, double radius) {
+                 const Eigen::Vector3d& origin, double radius, double exponent) {
   Eigen::Matrix<double, 10, 10> normal = Eigen::Matrix<double, 10, 10>::Zero();
   Coefficients right = Coefficients::Zero();
   double total = 0.0;
   for (const int e : patch) {
     for (int q = 4 * e; q < 4 * e + 4; ++q) {
       const Eigen::Vector3d r = (x.row(q).transpose() - origin) / radius;
-      const double near = 1.0 / (r.squaredNorm() + kCore);
-      const double weight = near * near;
+      const double weight = std::pow(r.squaredNorm() + kCore, -0.5 * exponent);
       const Basis p = quadratic_basis(r);
       const Basis wp = weight * p;
       total += weight;
@@ -127,6 +140,19 @@ Coefficients fit(const std::vector<int>& patch, const Points& x, const Stresses&
   return normal.ldlt().solve(right);
 }
 
+PatchField fit_around(const TetMesh& mesh, int corner, const std::vector<int>& patch,
+                      const Points& x, const Stresses& stress, double exponent) {
+  PatchField field{mesh.nodes.row(corner).transpose(), 0.0, {}};
+  for (const int e : patch) {
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector3d r = mesh.nodes.row(mesh.tets(e, i)).transpose() - field.origin;
+      field.radius = std::max(field.radius, r.norm());
+    }
+  }
+  field.coefficients = fit(patch, x, stress, field.origin, field.radius, exponent);
+  return field;
+}
+
 }  // namespace
 
 Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
@@ -138,15 +164,8 @@ Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
   for (int v = 0; v < nodes; ++v) {
     if (!finder.is_corner(v)) continue;
     const std::vector<int>& patch = finder.around(v);
-    const Eigen::Vector3d origin = mesh.nodes.row(v).transpose();
-    double radius = 0.0;
-    for (const int e : patch) {
-      for (int i = 0; i < 4; ++i) {
-        radius = std::max(radius, (mesh.nodes.row(mesh.tets(e, i)).transpose() - origin).norm());
-      }
-    }
-    const Coefficients polynomial = fit(patch, x, points.stress, origin, radius);
-    sum.row(v) += polynomial.row(0);
+    const PatchField field = fit_around(mesh, v, patch, x, points.stress, kExponent);
+    sum.row(v) += field.coefficients.row(0);
     ++count[at(v)];
     for (std::size_t i = 0; i < finder.core(); ++i) {
       for (int k = 0; k < 6; ++k) {
@@ -155,8 +174,7 @@ Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
             mesh.tets(e, kTetEdges[k][0]) == v || mesh.tets(e, kTetEdges[k][1]) == v;
         if (!on_edge || seen_from[at(middle)] == v) continue;
         seen_from[at(middle)] = v;
-        const Eigen::Vector3d r = (mesh.nodes.row(middle).transpose() - origin) / radius;
-        sum.row(middle).noalias() += quadratic_basis(r).transpose() * polynomial;
+        sum.row(middle) += field.at(mesh.nodes.row(middle).transpose());
         ++count[at(middle)];
       }
     }
@@ -165,6 +183,28 @@ Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
     if (count[at(n)] > 1) sum.row(n) /= count[at(n)];
   }
   return sum;
+}
+
+double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,
+                       const Eigen::Vector2d& reference) {
+  const Points x = stress_points(mesh);
+  PatchFinder finder(mesh);
+  const FaceNodes nodes = face_nodes(mesh, triangle);
+  Eigen::Matrix<double, 6, 6> smooth = Eigen::Matrix<double, 6, 6>::Zero(), sharp = smooth;
+  for (int k = 0; k < 3; ++k) {
+    const int corner = mesh.boundary(triangle, k);
+    const std::vector<int>& patch = finder.around(corner);
+    for (auto& [stress, exponent] :
+         {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
+      const PatchField field = fit_around(mesh, corner, patch, x, points.stress, exponent);
+      stress->row(k) += field.at(nodes.col(k));
+      stress->row(3 + k) += 0.5 * field.at(nodes.col(3 + k));
+      stress->row(3 + (k + 2) % 3) += 0.5 * field.at(nodes.col(3 + (k + 2) % 3));
+    }
+  }
+  const Eigen::Matrix<double, 6, 1> values = tri6_values(reference);
+  return std::abs(von_mises(Voigt(sharp.transpose() * values)) -
+                  von_mises(Voigt(smooth.transpose() * values)));
 }
 
 RecoveryError recovery_error(const TetMesh& mesh, const Material& material,

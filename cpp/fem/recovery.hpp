@@ -16,6 +16,11 @@ namespace codesign::fem {
 // and on a thick cylinder (docs/fem.md): third order where averaged element stresses have second.
 Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);
 
+// How much the von Mises stress (Pa) at a point of a boundary face depends on the recovery: the
+// difference between a fit that trusts near points more and one that smooths more.
+double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,
+                       const Eigen::Vector2d& reference);
+
 // How far the finite-element stress is from the recovered one.
 struct RecoveryError {
   double relative_energy = 0.0;  // energy norm of the difference over that of the recovered field

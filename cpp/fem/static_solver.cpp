@@ -112,8 +112,12 @@ struct StaticSystem::Data {
     const double distance = settings.exclusion_distance;
     r.stress_50 =
         stress_of_volume(mesh, points, clamped, distance, settings.stress_volume / settings.copies);
-    const PeakStress peak = codesign::fem::peak_stress(
-        mesh, r.stress, {clamped, loaded_triangles(mesh, loads), distance});
+    RecoveryError recovery = recovery_error(mesh, material, u, r.stress);
+    const PeakExclusion exclusion{clamped, loaded_triangles(mesh, loads), distance};
+    const PeakStress peak = codesign::fem::peak_stress(mesh, r.stress, exclusion);
+    r.stress_error = peak_stress_error(mesh, points, recovery, peak);
+    r.energy_error = recovery.relative_energy;
+    r.element_error = std::move(recovery.element);
     r.peak_stress = peak.value;
     r.peak_position = peak.position;
     r.safety_factor = peak.value > 0 ? material.yield_strength / peak.value

@@ -44,6 +44,9 @@ struct StaticResult {
   double strain_energy = 0.0;     // J, of the whole part; half the work if no support is moved
   double max_displacement = 0.0;  // m
   double peak_stress = 0.0;       // Pa, see peak_stress.hpp
+  double stress_error = 0.0;      // Pa, estimated error of peak_stress
+  double energy_error = 0.0;      // estimated relative error in the energy norm
+  Eigen::VectorXd element_error;  // (m) Pa, see RecoveryError
   Eigen::Vector3d peak_position = Eigen::Vector3d::Zero();
   double stress_50 = 0.0;      // Pa, von Mises exceeded in stress_volume
   double safety_factor = 0.0;  // yield strength / peak_stress
