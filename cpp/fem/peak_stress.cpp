@@ -95,7 +95,7 @@ PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExc
 
 double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
                          const RecoveryError& recovery, const PeakStress& peak) {
-  constexpr double kShare = 0.4;
+  constexpr double kShare = 0.4, kFloor = 0.01;
   double largest = 0.0;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
     bool touches = false;
@@ -104,7 +104,8 @@ double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
     }
     if (touches) largest = std::max(largest, recovery.element[e]);
   }
-  return recovery_spread(mesh, points, peak.triangle, peak.reference) + kShare * largest;
+  const double spread = recovery_spread(mesh, points, peak.triangle, peak.reference);
+  return std::max(spread + kShare * largest, kFloor * peak.value);
 }
 
 }  // namespace codesign::fem

@@ -31,8 +31,9 @@ PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExc
 
 // Estimated error (Pa) of the peak stress: the spread of the recovery there plus 0.4 times the
 // largest root mean square difference between finite-element and recovered stress over the elements
-// around the face. The sum was fitted once to notches of known stress and checked on the study's
-// parts (docs/fem.md); it is an estimate, not a bound.
+// around the face, and at least 1 % (a peak is the largest of many uncertain values). The sum was
+// fitted once to notches of known stress and checked on the study's parts (docs/fem.md); it is an
+// estimate, not a bound.
 double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
                          const RecoveryError& recovery, const PeakStress& peak);
 

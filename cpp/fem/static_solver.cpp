@@ -74,14 +74,16 @@ struct StaticSystem::Data {
   Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal,
                            double& residual) const {
     Eigen::VectorXd u = constraints.displacement;
-    internal = internal_forces(mesh, material, u);
-    const double scale = std::max(load.norm(), internal.norm());
+    internal = internal_forces(mesh, material, u).sum;
     residual = 0.0;
-    if (scale == 0.0 || pattern.equations() == 0) return u;
+    if (pattern.equations() == 0) return u;
+    if (load.isZero(0.0) && internal.isZero(0.0)) return u;
     for (int step = 0; step <= kMaxRefinements; ++step) {
       const Eigen::VectorXd correction = factor->solve(gather(load - internal));
       add_free(correction, u);
-      internal = internal_forces(mesh, material, u);
+      InternalForces forces = internal_forces(mesh, material, u);
+      internal = std::move(forces.sum);
+      const double scale = std::max(load.norm(), forces.size.norm());
       residual = gather(load - internal).norm() / scale;
       if (residual <= settings.residual_tolerance) return u;
     }

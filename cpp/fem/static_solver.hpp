@@ -50,7 +50,8 @@ struct StaticResult {
   Eigen::Vector3d peak_position = Eigen::Vector3d::Zero();
   double stress_50 = 0.0;      // Pa, von Mises exceeded in stress_volume
   double safety_factor = 0.0;  // yield strength / peak_stress
-  double residual = 0.0;       // |K u - f| / |f| over the free components
+  double residual = 0.0;       // |K u - f| over the free components, relative to the larger of the
+                               // load and the forces that flow through the nodes
   int equations = 0;
 };
 

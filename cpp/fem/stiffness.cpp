@@ -192,10 +192,11 @@ LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
   return a;
 }
 
-Eigen::VectorXd internal_forces(const TetMesh& mesh, const Material& material,
-                                const Eigen::VectorXd& displacement) {
+InternalForces internal_forces(const TetMesh& mesh, const Material& material,
+                               const Eigen::VectorXd& displacement) {
   const double lambda = lame_lambda(material), mu = shear_modulus(material);
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(displacement.size());
+  InternalForces f{Eigen::VectorXd::Zero(displacement.size()),
+                   Eigen::VectorXd::Zero(displacement.size())};
   TetPoints points;
   TetNodes u;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
@@ -210,7 +211,10 @@ Eigen::VectorXd internal_forces(const TetMesh& mesh, const Material& material,
       stress.diagonal().array() += lambda * h.trace();
       force.noalias() += points.weights[at(q)] * (stress * g);
     }
-    for (int i = 0; i < kTetNodes; ++i) f.segment<3>(3 * mesh.tets(e, i)) += force.col(i);
+    for (int i = 0; i < kTetNodes; ++i) {
+      f.sum.segment<3>(3 * mesh.tets(e, i)) += force.col(i);
+      f.size.segment<3>(3 * mesh.tets(e, i)) += force.col(i).cwiseAbs();
+    }
   }
   return f;
 }

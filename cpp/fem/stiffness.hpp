@@ -31,9 +31,13 @@ Eigen::VectorXd multiply(const LowerMatrix& a, const Eigen::VectorXd& x);
 LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
                                const NodePattern& pattern);
 
-// Internal nodal forces of a displacement field (3 n): integral of Bᵀ sigma over all elements, from
+// Nodal forces with which the elements resist a displacement field: integral of Bᵀ sigma, from
 // stresses instead of matrices.
-Eigen::VectorXd internal_forces(const TetMesh& mesh, const Material& material,
-                                const Eigen::VectorXd& displacement);
+struct InternalForces {
+  Eigen::VectorXd sum;   // (3 n) over the elements of a node
+  Eigen::VectorXd size;  // (3 n) sum of absolute values: what flows through the node
+};
+InternalForces internal_forces(const TetMesh& mesh, const Material& material,
+                               const Eigen::VectorXd& displacement);
 
 }  // namespace codesign::fem

@@ -70,7 +70,7 @@ def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartC
             documents[name] = known[name]
             continue
         analysis = result.parts[list(cases).index(name)]
-        documents[name] = part_document(masses[name], analysis, stress_settings(config, name).material)
+        documents[name] = part_document(masses[name], analysis)
         if cache is not None:
             cache.put(_part_key(study, part), documents[name])
     flight = result.flight

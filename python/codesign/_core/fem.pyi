@@ -367,6 +367,16 @@ class StaticResult:
         (n, 3) m
         """
     @property
+    def element_error(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (m) Pa, difference of element and recovered stress
+        """
+    @property
+    def energy_error(self) -> float:
+        """
+        estimated relative error in the energy norm
+        """
+    @property
     def equations(self) -> int: ...
     @property
     def max_displacement(self) -> float:
@@ -409,6 +419,11 @@ class StaticResult:
     def stress_50(self) -> float:
         """
         Pa
+        """
+    @property
+    def stress_error(self) -> float:
+        """
+        Pa, estimated error of peak_stress
         """
     @property
     def support_forces(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
