@@ -67,6 +67,15 @@ class MessageCollector : public console_bridge::OutputHandler {
   std::string errors_;
 };
 
+// Takes the links apart one by one: the chain of owners is as long as the robot is deep, and would
+// be released by recursion.
+void release(const urdf::ModelInterfaceSharedPtr& urdf) {
+  for (const auto& [name, link] : urdf->links_) {
+    link->child_links.clear();
+    link->child_joints.clear();
+  }
+}
+
 urdf::ModelInterfaceSharedPtr parse(const std::string& text) {
   static std::mutex mutex;  // console_bridge's handler is global
   const std::lock_guard<std::mutex> lock(mutex);
@@ -78,7 +87,10 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text) {
     throw UrdfError(std::string("URDF: ") + e.what());
   }
   // It also returns robots with elements that it could not read: they are not what the text says.
-  if (!urdf || !messages.errors().empty()) throw UrdfError("URDF: " + messages.errors());
+  if (!urdf || !messages.errors().empty()) {
+    if (urdf) release(urdf);
+    throw UrdfError("URDF: " + messages.errors());
+  }
   return urdf;
 }
 
@@ -183,7 +195,6 @@ class Builder {
       : urdf_(urdf), text_(text), options_(options) {
     model_.name = urdf.getName();
     model_.fixed_base = options.fixed_base;
-    check_tree();
     select_joints();
   }
 
@@ -211,41 +222,14 @@ class Builder {
     Pose body_T_link;
   };
 
-  // A link must have one parent; links that the root does not reach hang on a loop.
-  void check_tree() const {
-    std::map<std::string, std::string> joint_above;
-    for (const auto& [name, joint] : urdf_.joints_) {
-      const auto [other, inserted] = joint_above.emplace(joint->child_link_name, name);
-      if (!inserted) {
-        throw UrdfError("link " + in_quotes(joint->child_link_name) +
-                        " is the child of two joints, " + in_quotes(other->second) + " and " +
-                        in_quotes(name));
-      }
-    }
-    std::size_t reached = 0;
-    std::vector<const urdf::Link*> open = {urdf_.getRoot().get()};
-    while (!open.empty()) {
-      const urdf::Link* link = open.back();
-      open.pop_back();
-      ++reached;
-      for (const auto& child : link->child_links) open.push_back(child.get());
-    }
-    if (reached != urdf_.links_.size()) {
-      throw UrdfError("the joints form a loop: " + std::to_string(urdf_.links_.size() - reached) +
-                      " links are not connected to the root link " +
-                      in_quotes(urdf_.getRoot()->name));
-    }
-  }
-
   void select_joints() {
     std::vector<std::string> names;
     if (options_.joints) {
       names = *options_.joints;
     } else {
-      std::copy_if(text_.joints.begin(), text_.joints.end(), std::back_inserter(names),
-                   [&](const std::string& name) {
-                     return urdf_.getJoint(name)->type != urdf::Joint::FIXED;
-                   });
+      for (const UrdfText::Joint& joint : text_.joints) {
+        if (urdf_.getJoint(joint.name)->type != urdf::Joint::FIXED) names.push_back(joint.name);
+      }
     }
     for (const std::string& name : names) {
       const urdf::JointConstSharedPtr joint = urdf_.getJoint(name);
@@ -329,15 +313,6 @@ class Builder {
   std::map<std::string, int> order_;  // joint name → index in Model::joints
   Model model_;
 };
-
-// Takes the links apart one by one: the chain of owners is as long as the robot is deep, and would
-// be released by recursion.
-void release(const urdf::ModelInterfaceSharedPtr& urdf) {
-  for (const auto& [name, link] : urdf->links_) {
-    link->child_links.clear();
-    link->child_joints.clear();
-  }
-}
 
 bool is_text(const std::string& text_or_path) {
   std::size_t start = text_or_path.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // byte order mark

@@ -5,7 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "dynamics/xml_reader.hpp"
 #include "errors.hpp"
@@ -127,7 +129,11 @@ class Reducer {
     if (found == attributes.end() || found->value.empty()) reader_.fail(kind + " without a name");
     check_name(found->value);
     where_ = kind + " \"" + found->value + "\"";
-    (kind == "joint" ? result_.joints : result_.links).push_back(found->value);
+    if (kind == "link") {
+      result_.links.push_back(found->value);
+    } else {
+      result_.joints.push_back({found->value, {}, {}});
+    }
   }
 
   void check_name(const std::string& value) {
@@ -165,12 +171,18 @@ class Reducer {
         if (attribute.name == "quat_xyzw") fail("origin quat_xyzw is not supported, use rpy");
         continue;
       }
-      result_.xml += " " + std::string(attribute.name) + "=\"";
+      result_.xml.append(" ").append(attribute.name).append("=\"");
       if (rule != kNumbers.end()) {
         append_numbers(*rule, attribute.value);
       } else {
         check_name(attribute.value);
         append_escaped(attribute.value, result_.xml);
+        if (element == "parent" && attribute.name == "link") {
+          result_.joints.back().parent = attribute.value;
+        }
+        if (element == "child" && attribute.name == "link") {
+          result_.joints.back().child = attribute.value;
+        }
       }
       result_.xml += '"';
     }
@@ -223,11 +235,80 @@ class Reducer {
   int elements_ = 0;
 };
 
+// urdfdom must not see a loop: it would never free its links.
+class Tree {
+ public:
+  explicit Tree(const UrdfText& text) : text_(text) {
+    for (const std::string& link : text.links) {
+      if (!parents_.emplace(link, nullptr).second) fail("link", link, "is not unique");
+    }
+    std::set<std::string> names;
+    for (const UrdfText::Joint& joint : text.joints) {
+      if (!names.insert(joint.name).second) fail("joint", joint.name, "is not unique");
+      add(joint);
+    }
+  }
+
+  void check() const {
+    std::string root;
+    for (const std::string& link : text_.links) {
+      if (parents_.at(link) != nullptr) continue;
+      if (!root.empty()) {
+        fail("link", link, "is a second root: no joint leads to it, nor to \"" + root + "\"");
+      }
+      root = link;
+    }
+    std::set<std::string> reached = {root};
+    for (const std::string& start : text_.links) {
+      // Up to what is known to hang on the root; a walk longer than the robot is a loop.
+      std::vector<std::string> walk;
+      std::string link = start;
+      while (!reached.contains(link)) {
+        walk.push_back(link);
+        const UrdfText::Joint* joint = parents_.at(link);
+        if (joint == nullptr || walk.size() > text_.links.size()) {
+          fail("link", start, "is not connected to a root link: the joints form a loop");
+        }
+        link = joint->parent;
+      }
+      reached.insert(walk.begin(), walk.end());
+    }
+  }
+
+ private:
+  void add(const UrdfText::Joint& joint) {
+    for (const auto& [role, link] :
+         {std::pair("parent", &joint.parent), std::pair("child", &joint.child)}) {
+      if (link->empty()) fail("joint", joint.name, std::string("has no ") + role + " link");
+      if (!parents_.contains(*link)) {
+        fail("joint", joint.name,
+             std::string("has the ") + role + " link \"" + *link + "\", which does not exist");
+      }
+    }
+    const UrdfText::Joint*& above = parents_.at(joint.child);
+    if (above != nullptr) {
+      fail("link", joint.child,
+           "is the child of two joints, \"" + above->name + "\" and \"" + joint.name + "\"");
+    }
+    above = &joint;
+  }
+
+  [[noreturn]] static void fail(const std::string& kind, const std::string& name,
+                                const std::string& reason) {
+    throw UrdfError(kind + " \"" + name + "\" " + reason);
+  }
+
+  const UrdfText& text_;
+  std::map<std::string, const UrdfText::Joint*> parents_;  // link → joint above it
+};
+
 }  // namespace
 
 UrdfText reduce_urdf(std::string_view text) {
   if (text.size() > kMaxUrdfBytes) throw UrdfError("URDF: larger than 64 MiB");
-  return Reducer(text).reduce();
+  UrdfText reduced = Reducer(text).reduce();
+  Tree(reduced).check();
+  return reduced;
 }
 
 }  // namespace codesign::dynamics

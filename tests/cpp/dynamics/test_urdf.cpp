@@ -203,18 +203,19 @@ TEST(Urdf, RefusesDuplicates) {
 TEST(Urdf, RefusesBrokenTrees) {
   const std::string links = link("a") + link("b") + link("c");
   expect_refused(robot(""), {"link"});
-  expect_refused(robot(links + joint("j", "revolute", "a", "b")), {"root", "[a]", "[c]"});
+  expect_refused(robot(links + joint("j", "revolute", "a", "b")),
+                 {"link \"c\"", "second root", "\"a\""});
   expect_refused(robot(links + joint("j", "revolute", "a", "b") + joint("k", "revolute", "a", "c") +
                        joint("l", "fixed", "b", "c")),
                  {"link \"c\"", "two joints", "\"k\"", "\"l\""});
   expect_refused(robot(links + joint("j", "revolute", "b", "c") + joint("k", "fixed", "c", "b")),
-                 {"loop", "\"a\""});
+                 {"loop", "link \"b\""});
   expect_refused(robot(links + joint("j", "revolute", "a", "b") + joint("k", "fixed", "b", "c") +
                        joint("l", "fixed", "c", "a")),
-                 {"root"});
-  expect_refused(robot(link("a") + joint("j", "revolute", "a", "a")), {"root"});
-  expect_refused(robot(links + joint("j", "revolute", "a", "nowhere")), {"nowhere", "j"});
-  expect_refused(robot(links + joint("j", "revolute", "nowhere", "a")), {"nowhere", "j"});
+                 {"loop", "link \"a\""});
+  expect_refused(robot(link("a") + joint("j", "revolute", "a", "a")), {"loop", "link \"a\""});
+  expect_refused(robot(links + joint("j", "revolute", "a", "nowhere")), {"nowhere", "joint \"j\""});
+  expect_refused(robot(links + joint("j", "revolute", "nowhere", "a")), {"nowhere", "joint \"j\""});
 }
 
 TEST(Urdf, RefusesJointsThatCannotMove) {
