@@ -25,7 +25,7 @@ help:
 
 # --- set-up: each step leaves a stamp and is not done again -----------------------------------------------------------
 $(VENV)/system.stamp: apt-packages.txt scripts/install_system_packages
-	scripts/install_system_packages
+	scripts/install_system_packages apt-packages.txt
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
@@ -34,7 +34,8 @@ $(VENV)/runtime.stamp: pyproject.toml $(CXX_SOURCES) | $(VENV)/system.stamp
 	$(PIP) install --quiet --no-build-isolation --editable '.[view,cluster,analysis]'
 	@touch $@
 
-$(VENV)/test.stamp: $(VENV)/runtime.stamp pyproject.toml
+$(VENV)/test.stamp: apt-packages-test.txt $(VENV)/runtime.stamp pyproject.toml
+	scripts/install_system_packages apt-packages-test.txt
 	$(PIP) install --quiet --no-build-isolation --editable '.[view,cluster,analysis,test]'
 	@touch $@
 
@@ -49,7 +50,7 @@ test: $(VENV)/test.stamp
 	cmake -S . -B $(BUILD) -DCODESIGN_BUILD_TESTS=ON >/dev/null
 	cmake --build $(BUILD)
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
-	$(BIN)/python -m pytest -m 'not slow'
+	$(BIN)/python -m pytest -m 'not slow' -n $(JOBS) --dist loadfile
 
 # --- for developers ------------------------------------------------------------------------------------------------------
 stubs: $(VENV)/test.stamp

@@ -41,7 +41,7 @@ def visit(
         "request",
         lambda r: None if r.url.startswith((*local, "data:", "blob:")) else problems.append(f"request: {r.url[:120]}"),
     )
-    page.set_default_timeout(60_000)
+    page.set_default_timeout(180_000)  # software rendering on a busy machine is slow
     page.goto(address, wait_until="load")
     yield page
     page.close()
