@@ -15,7 +15,8 @@ namespace {
 
 fem::PartCase make_case(fem::SurfaceMesh surface, fem::SizeField size, fem::Material material,
                         std::vector<fem::Support> supports, std::vector<fem::Load> loads,
-                        const fem::StaticSettings& settings, double facet_angle_deg) {
+                        const fem::StaticSettings& settings, double facet_angle_deg,
+                        double tolerance, int max_refinements) {
   fem::PartCase part;
   part.surface = std::move(surface);
   part.size = std::move(size);
@@ -24,6 +25,8 @@ fem::PartCase make_case(fem::SurfaceMesh surface, fem::SizeField size, fem::Mate
   part.supports = std::move(supports);
   part.loads = std::move(loads);
   part.settings = settings;
+  part.tolerance = tolerance;
+  part.max_refinements = max_refinements;
   return part;
 }
 
@@ -35,10 +38,30 @@ void bind_evaluate(py::module_& m) {
       .def(py::init(&make_case), py::kw_only(), "surface"_a, "size"_a, "material"_a, "supports"_a,
            "loads"_a,
            py::arg_v("settings", fem::StaticSettings{}, "codesign._core.fem.StaticSettings()"),
-           "facet_angle_deg"_a = 25.0);
+           "facet_angle_deg"_a = 25.0, "tolerance"_a = fem::PartCase{}.tolerance,
+           "max_refinements"_a = 0)
+      .def_readonly("surface", &fem::PartCase::surface)
+      .def_readwrite("size", &fem::PartCase::size)
+      .def_readonly("material", &fem::PartCase::material)
+      .def_readonly("supports", &fem::PartCase::supports)
+      .def_readonly("loads", &fem::PartCase::loads)
+      .def_readonly("settings", &fem::PartCase::settings)
+      .def_readwrite("tolerance", &fem::PartCase::tolerance, "relative, of the peak stress")
+      .def_readwrite("max_refinements", &fem::PartCase::max_refinements, "0: one pass")
+      .def_readwrite("modes", &fem::PartCase::modes, "natural frequencies wanted");
   py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")
       .def_readonly("mesh", &fem::PartAnalysis::mesh)
       .def_readonly("result", &fem::PartAnalysis::result)
+      .def_readonly("frequencies", &fem::PartAnalysis::frequencies,
+                    "(modes,) Hz, ascending, of the whole part")
+      .def_readonly("size", &fem::PartAnalysis::size, "SizeField of the mesh")
+      .def_readonly("converged", &fem::PartAnalysis::converged,
+                    "estimated error, and the change if there is one, within the tolerance")
+      .def_readonly("refinements", &fem::PartAnalysis::refinements)
+      .def_readonly("change", &fem::PartAnalysis::change,
+                    "of the peak stress by the last refinement, relative")
+      .def_readonly("stopped", &fem::PartAnalysis::stopped,
+                    "why refining ended without convergence; empty otherwise")
       .def_readonly("mesh_seconds", &fem::PartAnalysis::mesh_seconds)
       .def_readonly("solve_seconds", &fem::PartAnalysis::solve_seconds);
   m.def("analyse_part", &fem::analyse_part, "part"_a, py::call_guard<py::gil_scoped_release>(),

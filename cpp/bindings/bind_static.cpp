@@ -78,12 +78,18 @@ void bind_supports_and_loads(py::module_& m) {
 }
 
 void bind_result(py::module_& m) {
+  py::enum_<LinearSolver>(m, "LinearSolver")
+      .value("automatic", LinearSolver::automatic)
+      .value("direct", LinearSolver::direct)
+      .value("iterative", LinearSolver::iterative);
   py::class_<StaticSettings>(m, "StaticSettings")
       .def(py::init<>())
       .def_readwrite("exclusion_distance", &StaticSettings::exclusion_distance)
       .def_readwrite("stress_volume", &StaticSettings::stress_volume)
       .def_readwrite("copies", &StaticSettings::copies)
-      .def_readwrite("residual_tolerance", &StaticSettings::residual_tolerance);
+      .def_readwrite("residual_tolerance", &StaticSettings::residual_tolerance)
+      .def_readwrite("solver", &StaticSettings::solver)
+      .def_readwrite("memory_limit", &StaticSettings::memory_limit, "bytes for the factor");
   py::class_<StaticResult>(m, "StaticResult", "Displacement, stress and safety factor of a part.")
       .def_readonly("displacement", &StaticResult::displacement, "(n, 3) m")
       .def_readonly("stress", &StaticResult::stress, "(n, 6) Pa: xx yy zz xy yz zx")
@@ -104,11 +110,21 @@ void bind_result(py::module_& m) {
       .def_readonly("stress_50", &StaticResult::stress_50, "Pa")
       .def_readonly("safety_factor", &StaticResult::safety_factor)
       .def_readonly("residual", &StaticResult::residual, "relative, over the free components")
-      .def_readonly("equations", &StaticResult::equations);
+      .def_readonly("equations", &StaticResult::equations)
+      .def_readonly("iterations", &StaticResult::iterations,
+                    "of conjugate gradients; 0: solved by the factor");
+  py::class_<NaturalModes>(m, "NaturalModes", "Free vibration of a part.")
+      .def_readonly("frequency", &NaturalModes::frequency,
+                    "(k,) Hz, ascending; 0 for rigid motions")
+      .def_readonly("shape", &NaturalModes::shape, "(3 n, k) columns, modal mass 1 kg");
   py::class_<StaticSystem>(m, "StaticSystem", "A model factorised once for many load cases.")
       .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings>(), "mesh"_a,
            "material"_a, "supports"_a, "settings"_a, py::call_guard<py::gil_scoped_release>())
-      .def("solve", &StaticSystem::solve, "loads"_a, py::call_guard<py::gil_scoped_release>());
+      .def("solve", &StaticSystem::solve, "loads"_a, py::call_guard<py::gil_scoped_release>())
+      .def("natural_modes", &StaticSystem::natural_modes, "count"_a,
+           py::call_guard<py::gil_scoped_release>());
+  m.def("natural_modes", &natural_modes, "mesh"_a, "material"_a, "supports"_a, "count"_a,
+        py::call_guard<py::gil_scoped_release>());
 }
 
 }  // namespace

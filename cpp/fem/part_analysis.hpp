@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "fem/size_field.hpp"
@@ -20,16 +22,30 @@ struct PartCase {
   std::vector<Support> supports;
   std::vector<Load> loads;
   StaticSettings settings;
+  double tolerance = 0.05;  // wanted relative error of the peak stress, and so of the safety factor
+  int max_refinements = 0;  // local refinements around the peak allowed to reach it; 0: one pass
+  int modes = 0;            // natural frequencies wanted
 };
 
 struct PartAnalysis {
   TetMesh mesh;
   StaticResult result;
-  double mesh_seconds = 0.0;   // wall clock
-  double solve_seconds = 0.0;  // order, assemble, factorise, solve, recover
+  Eigen::VectorXd frequencies;  // (modes) Hz, ascending, of the whole part
+  SizeField size;               // that the mesh was made with
+  bool converged = false;  // estimated error, and the change if there is one, within the tolerance
+  int refinements = 0;     // done
+  double change = 0.0;     // of the peak stress by the last refinement, relative
+  std::string stopped;     // why refining ended without convergence; empty otherwise
+  double mesh_seconds = 0.0;   // wall clock, all passes
+  double solve_seconds = 0.0;  // order, assemble, factorise, solve, recover; all passes
 };
 
-// Surface to safety factor. Throws MeshError, SolverError, std::invalid_argument (unknown face).
+// Surface to safety factor. With refinements allowed, elements around the peak are halved at least
+// once, until estimated error and change are within the tolerance. Throws MeshError, SolverError,
+// std::invalid_argument (unknown face); if only a refined pass fails, the last result stands.
 PartAnalysis analyse_part(const PartCase& part);
+
+// The size field with half the edge length around a point.
+SizeField refine_around(const SizeField& size, const Eigen::Vector3d& point);
 
 }  // namespace codesign::fem

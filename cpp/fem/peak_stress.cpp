@@ -1,6 +1,7 @@
 #include "fem/peak_stress.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "fem/surface_distance.hpp"
@@ -95,7 +96,8 @@ PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExc
 
 double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
                          const RecoveryError& recovery, const PeakStress& peak) {
-  constexpr double kShare = 0.4, kFloor = 0.01;
+  constexpr double kShare = 0.4, kFloor = 0.025, kSlope = 0.5, kCoarse = 23.0;
+  if (!(peak.value > 0)) return 0.0;
   double largest = 0.0;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
     bool touches = false;
@@ -105,7 +107,8 @@ double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
     if (touches) largest = std::max(largest, recovery.element[e]);
   }
   const double spread = recovery_spread(mesh, points, peak.triangle, peak.reference);
-  return std::max(spread + kShare * largest, kFloor * peak.value);
+  const double x = (spread + kShare * largest) / peak.value;
+  return (std::hypot(kFloor, kSlope * x) + kCoarse * x * x * x) * peak.value;
 }
 
 }  // namespace codesign::fem

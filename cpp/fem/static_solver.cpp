@@ -12,12 +12,15 @@
 #include "fem/recovery.hpp"
 #include "fem/rigid_motions.hpp"
 #include "fem/stiffness.hpp"
+#include "fem/two_level.hpp"
 
 namespace codesign::fem {
 
 namespace {
 
 constexpr int kMaxRefinements = 3;
+constexpr double kGradientTolerance = 1e-11;  // of conjugate gradients, see there
+constexpr int kMaxIterations = 500;
 
 void check_mesh(const TetMesh& mesh) {
   if (mesh.tets.rows() == 0) throw MeshError("the mesh has no elements");
@@ -34,6 +37,13 @@ void check_settings(const StaticSettings& s) {
   if (!(s.stress_volume > 0)) throw std::invalid_argument("stress_volume must be > 0");
   if (s.copies < 1) throw std::invalid_argument("copies must be >= 1");
   if (!(s.residual_tolerance > 0)) throw std::invalid_argument("residual_tolerance must be > 0");
+}
+
+bool solves_directly(const NodePattern& pattern, const StaticSettings& settings) {
+  if (settings.solver != LinearSolver::automatic) return settings.solver == LinearSolver::direct;
+  const double entries = pattern.supernodes.entries;
+  return sizeof(double) * entries <= settings.memory_limit &&
+         entries < std::numeric_limits<int>::max();
 }
 
 void require_held(const TetMesh& mesh, const Constraints& constraints) {
@@ -53,7 +63,9 @@ struct StaticSystem::Data {
   StaticSettings settings;
   Constraints constraints;
   NodePattern pattern;
-  std::unique_ptr<CholeskyFactor> factor;
+  std::unique_ptr<CholeskyFactor> factor;  // or, if it would be too large:
+  LowerMatrix stiffness;
+  std::unique_ptr<TwoLevelPreconditioner> preconditioner;
   std::vector<int> clamped;
 
   Eigen::VectorXd gather(const Eigen::VectorXd& nodal) const {
@@ -70,16 +82,24 @@ struct StaticSystem::Data {
     }
   }
 
+  Eigen::VectorXd solve_free(const Eigen::VectorXd& force, int& iterations) const {
+    if (factor) return factor->solve(force);
+    ConjugateGradientResult result =
+        conjugate_gradients(stiffness, *preconditioner, force, kGradientTolerance, kMaxIterations);
+    iterations += result.iterations;
+    return std::move(result.solution);
+  }
+
   // Displacement with iterative refinement; internal is left as its internal forces.
-  Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal,
-                           double& residual) const {
+  Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal, double& residual,
+                           int& iterations) const {
     Eigen::VectorXd u = constraints.displacement;
     internal = internal_forces(mesh, material, u).sum;
     residual = 0.0;
     if (pattern.equations() == 0) return u;
     if (load.isZero(0.0) && internal.isZero(0.0)) return u;
     for (int step = 0; step <= kMaxRefinements; ++step) {
-      const Eigen::VectorXd correction = factor->solve(gather(load - internal));
+      const Eigen::VectorXd correction = solve_free(gather(load - internal), iterations);
       add_free(correction, u);
       InternalForces forces = internal_forces(mesh, material, u);
       internal = std::move(forces.sum);
@@ -143,8 +163,14 @@ StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support>
   d.clamped = clamped_triangles(d.mesh, d.supports);
   d.pattern = order_nodes(d.mesh, d.constraints);
   if (d.pattern.equations() == 0) return;
-  const LowerMatrix stiffness = assemble_stiffness(d.mesh, d.material, d.pattern);
-  d.factor = std::make_unique<CholeskyFactor>(d.pattern, stiffness);
+  LowerMatrix stiffness = assemble_stiffness(d.mesh, d.material, d.pattern);
+  if (solves_directly(d.pattern, settings)) {
+    d.factor = std::make_unique<CholeskyFactor>(d.pattern, stiffness);
+  } else {
+    d.stiffness = std::move(stiffness);
+    d.preconditioner = std::make_unique<TwoLevelPreconditioner>(d.mesh, d.material, d.constraints,
+                                                                d.pattern, d.stiffness);
+  }
 }
 
 StaticSystem::~StaticSystem() = default;
@@ -158,7 +184,7 @@ StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
   const Eigen::VectorXd load = load_vector(d.mesh, d.material, loads);
   StaticResult r;
   Eigen::VectorXd internal;
-  const Eigen::VectorXd u = d.displace(load, internal, r.residual);
+  const Eigen::VectorXd u = d.displace(load, internal, r.residual, r.iterations);
   r.displacement = Eigen::Map<const Points>(u.data(), d.mesh.nodes.rows(), 3);
   r.max_displacement = r.displacement.rowwise().norm().maxCoeff();
   r.work = d.settings.copies * load.dot(u);
@@ -167,6 +193,14 @@ StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
   d.read_forces(load, internal, r);
   d.read_stress(loads, u, r);
   return r;
+}
+
+NaturalModes StaticSystem::natural_modes(int count) const {
+  const Data& d = *data_;
+  if (!d.factor) throw std::invalid_argument("modes need the direct solver and a free component");
+  if (!(d.material.density > 0)) throw std::invalid_argument("modes need a density above 0");
+  return modes_of_factor(d.pattern, assemble_mass(d.mesh, d.material, d.pattern), *d.factor, 0.0,
+                         count);
 }
 
 StaticResult solve_static(const StaticModel& model) {

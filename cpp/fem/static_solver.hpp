@@ -6,6 +6,7 @@
 
 #include "fem/loads.hpp"
 #include "fem/material.hpp"
+#include "fem/natural_modes.hpp"
 #include "fem/peak_stress.hpp"
 #include "fem/stress.hpp"
 #include "fem/supports.hpp"
@@ -19,11 +20,16 @@
 // by quadratic tetrahedra: order, assemble, factorise, solve, check the residual, recover stress.
 namespace codesign::fem {
 
+// automatic: direct if the factor fits into the memory limit (known before it is computed).
+enum class LinearSolver { automatic, direct, iterative };
+
 struct StaticSettings {
   double exclusion_distance = 3e-3;  // m, see PeakExclusion
   double stress_volume = 50e-9;      // m³ of the whole part, see StaticResult::stress_50
   int copies = 1;                    // 2 for a half model: work and stress_volume count the part
   double residual_tolerance = 1e-9;  // relative
+  LinearSolver solver = LinearSolver::automatic;
+  double memory_limit = 4e9;  // bytes for the factor
 };
 
 struct StaticModel {
@@ -53,6 +59,7 @@ struct StaticResult {
   double residual = 0.0;       // |K u - f| over the free components, relative to the larger of the
                                // load and the forces that flow through the nodes
   int equations = 0;
+  int iterations = 0;  // of conjugate gradients; 0: solved by the factor
 };
 
 // A model ordered, assembled and factorised once, for any number of load cases.
@@ -68,6 +75,10 @@ class StaticSystem {
 
   // Throws SolverError if the residual misses the tolerance.
   StaticResult solve(const std::vector<Load>& loads) const;
+
+  // The lowest modes on the supports, from the same factor. Throws SolverError,
+  // std::invalid_argument: no density, count < 1, or solved iteratively.
+  NaturalModes natural_modes(int count) const;
 
   const TetMesh& mesh() const;
 

@@ -175,21 +175,78 @@ Eigen::VectorXd multiply(const LowerMatrix& a, const Eigen::VectorXd& x) {
   return y;
 }
 
-LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
-                               const NodePattern& pattern) {
+namespace {
+
+// Sum of the element matrices that element(e, k) writes into k.
+template <class Element>
+LowerMatrix assemble(const TetMesh& mesh, const NodePattern& pattern, const Element& element) {
   LowerMatrix a;
   const std::vector<int> offset = fill_structure(pattern, a);
-  const double lambda = lame_lambda(material), mu = shear_modulus(material);
   ElementMatrix k;
   for (const int e : elements_by_column(mesh, pattern)) {
     try {
-      element_stiffness(tet_nodes(mesh, e), lambda, mu, k);
+      element(e, k);
     } catch (const MeshError& error) {
       throw MeshError("element " + std::to_string(e) + ": " + error.what());
     }
     scatter(pattern, offset, mesh.tets.row(e).data(), k, a);
   }
   return a;
+}
+
+}  // namespace
+
+LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
+                               const NodePattern& pattern) {
+  const double lambda = lame_lambda(material), mu = shear_modulus(material);
+  return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
+    element_stiffness(tet_nodes(mesh, e), lambda, mu, k);
+  });
+}
+
+LowerMatrix assemble_mass(const TetMesh& mesh, const Material& material,
+                          const NodePattern& pattern) {
+  const TetRule& rule = tet_rule_14();
+  std::vector<TetValues> values;
+  for (const Eigen::Vector3d& p : rule.points) values.push_back(tet10_values(p));
+  TetPoints points;
+  return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
+    evaluate_tet(tet_nodes(mesh, e), rule, points);
+    Eigen::Matrix<double, kTetNodes, kTetNodes> m = decltype(m)::Zero();
+    for (int q = 0; q < points.count; ++q) {
+      m.noalias() +=
+          (material.density * points.weights[at(q)] * values[at(q)]) * values[at(q)].transpose();
+    }
+    k.setZero();
+    for (int j = 0; j < kTetNodes; ++j) {
+      for (int i = 0; i < kTetNodes; ++i) {
+        k.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(m(i, j));
+      }
+    }
+  });
+}
+
+LowerMatrix assemble_linear_stiffness(const TetMesh& mesh, const Material& material,
+                                      const Constraints& constraints, const NodePattern& pattern) {
+  const double lambda = lame_lambda(material), mu = shear_modulus(material);
+  ElementMatrix full;
+  Eigen::Matrix<double, 30, 12> interpolation;
+  return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
+    element_stiffness(tet_nodes(mesh, e), lambda, mu, full);
+    interpolation.setZero();
+    for (int i = 0; i < kTetNodes; ++i) {
+      for (int a = 0; a < 3; ++a) {
+        if (constraints.fixed[3 * at(mesh.tets(e, i)) + at(a)]) continue;
+        if (i < 4) {
+          interpolation(3 * i + a, 3 * i + a) = 1.0;
+        } else {
+          for (const int end : kTetEdges[i - 4]) interpolation(3 * i + a, 3 * end + a) = 0.5;
+        }
+      }
+    }
+    k.setZero();
+    k.topLeftCorner<12, 12>().noalias() = interpolation.transpose() * full * interpolation;
+  });
 }
 
 InternalForces internal_forces(const TetMesh& mesh, const Material& material,

@@ -31,6 +31,16 @@ Eigen::VectorXd multiply(const LowerMatrix& a, const Eigen::VectorXd& x);
 LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
                                const NodePattern& pattern);
 
+// Consistent mass of the free components, kg, with the same structure.
+LowerMatrix assemble_mass(const TetMesh& mesh, const Material& material,
+                          const NodePattern& pattern);
+
+// Stiffness seen by displacements that are linear over each element (exact also on curved ones):
+// `pattern` numbers corner nodes only, mid-edge nodes follow the mean of their ends where they are
+// free in `constraints`. Symmetric positive definite wherever the stiffness is.
+LowerMatrix assemble_linear_stiffness(const TetMesh& mesh, const Material& material,
+                                      const Constraints& constraints, const NodePattern& pattern);
+
 // Nodal forces with which the elements resist a displacement field: integral of Bᵀ sigma, from
 // stresses instead of matrices.
 struct InternalForces {

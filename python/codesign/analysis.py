@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -12,6 +12,9 @@ from codesign import _core, fem
 
 if TYPE_CHECKING:
     from codesign.geometry.part import Part
+
+
+MAX_REFINEMENTS = 3  # halvings of the edge length around the peak
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +30,9 @@ class StressSettings:
     """How a part's stress is computed; the same for all parts of a study but for supports and loads.
 
     geometry: "simplified" or "full" (see the part). load, support: variant names that a part may offer.
-    accuracy: "optimisation" or "fine" mesh. exclusion_distance: [m] from clamps and from borders of loaded faces within
-    which the peak stress is not read. tolerance: wanted relative error of the peak stress.
+    accuracy: "optimisation" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
+    error and its change are within the tolerance. exclusion_distance: [m] from clamps and from borders of loaded faces
+    within which the peak stress is not read. tolerance: wanted relative error of the peak stress.
     """
 
     material: fem.Material
@@ -37,9 +41,15 @@ class StressSettings:
     geometry: Literal["simplified", "full"] = "simplified"
     load: str = "uniform"
     support: str = "published"
-    accuracy: Literal["optimisation", "fine"] = "optimisation"
+    accuracy: Literal["optimisation", "fine", "converged"] = "optimisation"
     exclusion_distance: float = 3e-3
     tolerance: float = 0.05
+    modes: int = 0
+
+    @property
+    def segments(self) -> int:
+        """Chords on a full circle of the surface that is meshed."""
+        return 48 if self.accuracy == "optimisation" else 96
 
 
 def part_case(part: Part, settings: StressSettings) -> _core.PartCase:
@@ -50,12 +60,12 @@ def part_case(part: Part, settings: StressSettings) -> _core.PartCase:
 
 def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
     """Clamped and pressed faces by name; edge length from the part's volume and area (its mean wall thickness)."""
-    surface = part.fem_surface(settings.geometry)
+    surface = part.fem_surface(settings.geometry, settings.segments)
     properties = part.mass_properties()
     corners = surface.points[surface.triangles]
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     thickness = 2.0 * properties.volume / areas.sum()
-    edge_length = thickness * (0.35 if settings.accuracy == "optimisation" else 0.2)
+    edge_length = thickness * (0.2 if settings.accuracy == "fine" else 0.35)  # the peak's own size is found by refining
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     loads = []
     for load in settings.loads:
@@ -88,7 +98,7 @@ def native_case(
     static = _core.fem.StaticSettings()
     static.exclusion_distance = settings.exclusion_distance
     static.copies = copies
-    return _core.PartCase(
+    case = _core.PartCase(
         surface=surface,
         size=size,
         material=settings.material,
@@ -96,12 +106,22 @@ def native_case(
         loads=list(loads),
         settings=static,
         facet_angle_deg=facet_angle_deg,
+        tolerance=settings.tolerance,
+        max_refinements=MAX_REFINEMENTS if settings.accuracy == "converged" else 0,
     )
+    case.modes = settings.modes
+    return case
 
 
 def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
     """Numbers of one part for JSON, SI units."""
     result = analysis.result
+    optional: dict[str, Any] = {}
+    if analysis.refinements:
+        optional = {"refinements": analysis.refinements, "change": analysis.change}
+    if len(analysis.frequencies):
+        optional["first_frequency"] = float(analysis.frequencies[0])
+        optional["frequencies"] = [float(f) for f in analysis.frequencies]
     return {
         "mass": float(mass.mass),
         "com": [float(x) for x in mass.com],
@@ -110,6 +130,8 @@ def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
         "peak_stress": result.peak_stress,
         "stress_50": result.stress_50,
         "stress_error": result.stress_error,
+        "tolerance_reached": analysis.converged,
+        **optional,
         "max_displacement": result.max_displacement,
         "work": result.work,
         "peak_position": [float(x) for x in result.peak_position],
@@ -117,3 +139,32 @@ def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
         "tetrahedra": len(analysis.mesh.tets),
         "seconds": {"mesh": analysis.mesh_seconds, "solve": analysis.solve_seconds},
     }
+
+
+@dataclass(frozen=True, slots=True)
+class Confirmation:
+    """A part as the optimisation analyses it beside the part as it is made; documents as of `part_document`.
+
+    confirmed: full geometry, fine mesh, refined around the peak; `tolerance_reached` says whether that was enough.
+    """
+
+    analysed: dict[str, Any]
+    confirmed: dict[str, Any]
+
+    @property
+    def deviation(self) -> float:
+        """Of the analysed safety factor from the confirmed one, relative."""
+        return float(self.analysed["safety_factor"] / self.confirmed["safety_factor"] - 1.0)
+
+
+def confirm(part: Part, settings: StressSettings) -> Confirmation:
+    """Analyses a part with the given settings, and its full geometry on a fine mesh until the tolerance is reached.
+
+    Raises: MeshError, SolverError, GeometryError.
+    """
+    mass = part.mass_properties()
+    full = replace(settings, geometry="full", accuracy="converged")
+    analysed, confirmed = (
+        part_document(mass, _core.analyse_part(part_case(part, chosen))) for chosen in (settings, full)
+    )
+    return Confirmation(analysed, confirmed)

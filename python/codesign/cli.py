@@ -19,6 +19,9 @@ from rich.table import Table
 from codesign.errors import CodesignError, DesignError, StudyError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from codesign.analysis import Confirmation
     from codesign.evaluation import Evaluation
     from codesign.optimization import Resources
     from codesign.runs import Run
@@ -85,21 +88,41 @@ def print_evaluation(evaluation: Evaluation) -> None:
     out.print(table)
 
 
+def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
+    """Analysed and confirmed numbers of each part side by side."""
+    for name, confirmation in confirmations.items():
+        table = Table("", "as analysed", "full, fine mesh", title=name, title_justify="left", box=None, pad_edge=False)
+        both = (confirmation.analysed, confirmation.confirmed)
+        table.add_row("safety factor", *(f"{part['safety_factor']:.2f}" for part in both))
+        stresses = (f"{part['peak_stress'] / 1e6:.2f} ± {part['stress_error'] / 1e6:.2f}" for part in both)
+        table.add_row("peak stress [MPa]", *stresses)
+        table.add_row("stress in 50 mm³ [MPa]", *(f"{part['stress_50'] / 1e6:.2f}" for part in both))
+        table.add_row("largest displacement [mm]", *(f"{part['max_displacement'] * 1e3:.4f}" for part in both))
+        table.add_row("tolerance reached", *("yes" if part["tolerance_reached"] else "no" for part in both))
+        table.add_row("seconds", *(f"{sum(part['seconds'].values()):.1f}" for part in both))
+        out.print(table)
+
+
 @app.command(epilog=f"Example: `codesign evaluate {EXAMPLE_DESIGN}`")
 def evaluate(
     set_: SetOption,
     study: StudyOption = DEFAULT_STUDY,
     trajectory: TrajectoryOption = None,
+    confirm: Annotated[bool, typer.Option("--confirm", help="Full parts on fine meshes too (some seconds).")] = False,
     as_json: JsonOption = False,
 ) -> int:
     """One design through the whole chain: parts, stress, robot, flight, objectives."""
     from codesign.study import load_study
 
-    evaluation = load_study(study).evaluate(parse_design(set_), trajectory=trajectory)
+    loaded = load_study(study)
+    evaluation = loaded.evaluate(parse_design(set_), trajectory=trajectory)
+    confirmations = loaded.confirm(evaluation.design) if confirm and evaluation.status != "failed" else {}
     if as_json:
-        print_json(evaluation.to_dict())
+        confirmed = {"confirmed": {name: c.confirmed for name, c in confirmations.items()}} if confirm else {}
+        print_json(evaluation.to_dict() | confirmed)
     else:
         print_evaluation(evaluation)
+        print_confirmations(confirmations)
     return 0 if evaluation.status == "feasible" else 1
 
 

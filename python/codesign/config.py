@@ -82,7 +82,7 @@ class FemConfig(Section, frozen=True, kw_only=True):
     geometry: Literal["simplified", "full"] = "simplified"
     load: str = "uniform"
     support: str = "published"
-    accuracy: Literal["optimisation", "fine"] = "optimisation"
+    accuracy: Literal["optimisation", "fine", "converged"] = "optimisation"
     exclusion_distance_mm: NonNegative = 3.0
     tolerance: Positive = 0.05
 
@@ -268,12 +268,16 @@ class ObjectivesConfig(Section, frozen=True, kw_only=True):
 
 
 class ConstraintsConfig(Section, frozen=True, kw_only=True):
-    """What a design must satisfy. Clearances need the section [interference]; None: reported only."""
+    """What a design must satisfy. Clearances need the section [interference]; None: reported only.
+
+    first_frequency_min_hz: of each part on its supports; None: not computed.
+    """
 
     safety_factor_min: Positive = 10.0
     flight_completed: bool = True
     body_clearance_min_mm: float | None = None
     plume_clearance_min_mm: float | None = None
+    first_frequency_min_hz: Positive | None = None
 
 
 class ValidationConfig(Section, frozen=True, kw_only=True):

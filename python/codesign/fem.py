@@ -30,7 +30,7 @@ from codesign.fem_model import (
     select_nodes,
     select_union,
 )
-from codesign.fem_static import StaticResult, StaticSystem, solve_static
+from codesign.fem_static import Modes, StaticResult, StaticSystem, natural_frequencies, solve_static
 
 __all__ = [
     "Acceleration",
@@ -42,6 +42,7 @@ __all__ = [
     "MassProperties",
     "Material",
     "MeshQuality",
+    "Modes",
     "Pressure",
     "Selection",
     "SizeField",
@@ -57,6 +58,7 @@ __all__ = [
     "faces_with_normal",
     "load_surface",
     "mass_properties",
+    "natural_frequencies",
     "select_faces",
     "select_nodes",
     "select_union",

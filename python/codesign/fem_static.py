@@ -3,10 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
 
 from codesign._core import fem as _core
 from codesign._core.fem import StaticResult as StaticResult
 from codesign.fem_model import Load, Material, Support, TetMesh, native_loads, native_supports
+
+Solver = Literal["automatic", "direct", "iterative"]
+MEMORY_LIMIT = 4e9  # bytes
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Undamped free vibration of a part.
+
+    frequency: (k,) Hz, ascending; 0 for rigid motions. shape: (k, n, 3) displacements [m] of modal mass 1 kg.
+    """
+
+    frequency: NDArray[np.float64]
+    shape: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, native: _core.NaturalModes) -> Modes:
+        """From the native result."""
+        count = len(native.frequency)
+        return cls(np.array(native.frequency), np.array(native.shape).T.reshape(count, -1, 3))
 
 
 class StaticSystem:
@@ -20,6 +45,9 @@ class StaticSystem:
         stress_volume: [m³] `stress_50` is the von Mises stress exceeded in this volume of the part.
         copies: 2 if the mesh is one half of a symmetric part: work and stress_volume then count the whole.
         residual_tolerance: largest relative residual accepted.
+        solver: "direct" factorises, "iterative" (conjugate gradients, two-level preconditioner) needs far less memory;
+            "automatic" takes the factor if it fits into memory_limit.
+        memory_limit: [bytes] for the factor.
 
     Raises:
         SolverError: the supports leave a rigid motion free (the message names it), or the residual is too large.
@@ -37,18 +65,28 @@ class StaticSystem:
         stress_volume: float = 50e-9,
         copies: int = 1,
         residual_tolerance: float = 1e-9,
+        solver: Solver = "automatic",
+        memory_limit: float = MEMORY_LIMIT,
     ) -> None:
+        if solver not in get_args(Solver):
+            raise ValueError(f"solver = {solver!r}: must be one of {', '.join(get_args(Solver))}")
         settings = _core.StaticSettings()
         settings.exclusion_distance = exclusion_distance
         settings.stress_volume = stress_volume
         settings.copies = copies
         settings.residual_tolerance = residual_tolerance
+        settings.solver = getattr(_core.LinearSolver, solver)
+        settings.memory_limit = memory_limit
         self.mesh = mesh
         self._system = _core.StaticSystem(mesh, material, native_supports(mesh, supports), settings)
 
     def solve(self, loads: Sequence[Load]) -> StaticResult:
         """The response to one load case."""
         return self._system.solve(native_loads(self.mesh, loads))
+
+    def natural_frequencies(self, count: int = 6) -> Modes:
+        """The lowest modes on the supports, from the same factor. Raises: ValueError if it was solved iteratively."""
+        return Modes.of(self._system.natural_modes(count))
 
 
 def solve_static(
@@ -61,6 +99,8 @@ def solve_static(
     stress_volume: float = 50e-9,
     copies: int = 1,
     residual_tolerance: float = 1e-9,
+    solver: Solver = "automatic",
+    memory_limit: float = MEMORY_LIMIT,
 ) -> StaticResult:
     """Displacement, stress and safety factor of one load case; arguments as in `StaticSystem`."""
     system = StaticSystem(
@@ -71,5 +111,15 @@ def solve_static(
         stress_volume=stress_volume,
         copies=copies,
         residual_tolerance=residual_tolerance,
+        solver=solver,
+        memory_limit=memory_limit,
     )
     return system.solve(loads)
+
+
+def natural_frequencies(mesh: TetMesh, material: Material, supports: Sequence[Support], count: int = 6) -> Modes:
+    """The lowest modes of a part on its supports, or of a free one (then the rigid motions come first).
+
+    Raises: ValueError: no density, count < 1; MeshError, SolverError.
+    """
+    return Modes.of(_core.natural_modes(mesh, material, native_supports(mesh, supports), count))

@@ -14,7 +14,7 @@ import numpy as np
 
 from codesign import _core
 from codesign import dynamics as dyn
-from codesign.analysis import PressedFace, StressSettings, part_case, part_document
+from codesign.analysis import Confirmation, PressedFace, StressSettings, confirm, part_case, part_document
 from codesign.config import StudyConfig
 from codesign.design import Design
 from codesign.errors import CodesignError
@@ -30,6 +30,7 @@ from codesign.units import GIGA, MEGA, MILLIMETRE
 from codesign.urdf import RobotDescription
 
 CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
+MODES = 3  # natural frequencies of a part, where a study limits the first
 CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a safety factor of zero
 
 if TYPE_CHECKING:
@@ -127,7 +128,19 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
         accuracy=stress.accuracy,
         exclusion_distance=stress.exclusion_distance_mm * MILLIMETRE,
         tolerance=stress.tolerance,
+        modes=0 if config.constraints.first_frequency_min_hz is None else MODES,
     )
+
+
+def confirm_parts(study: Study, design: Design) -> dict[str, Confirmation]:
+    """Every part of a design as the study analyses it, beside its full geometry on a fine mesh.
+
+    Raises: MeshError, SolverError, GeometryError.
+    """
+    config = study.configured(design)
+    return {
+        name: confirm(part, stress_settings(config, name)) for name, part in build_parts(study, design, config).items()
+    }
 
 
 def build_robot(study: Study, design: Mapping[str, float]) -> RobotDescription:
@@ -264,6 +277,10 @@ def _constraints(
         required = config.constraints.safety_factor_min
         constraints["safety_factor"] = smallest
         violations["safety_factor"] = max(0.0, (required - smallest) / required)
+    lowest = config.constraints.first_frequency_min_hz
+    if parts and lowest is not None:
+        constraints["first_frequency"] = min(part["first_frequency"] for part in parts.values())
+        violations["first_frequency"] = max(0.0, (lowest - constraints["first_frequency"]) / lowest)
     if config.constraints.flight_completed:
         # The share of the flight that was missed: of two lost designs the one that flew longer is better.
         flown = (flight.failure_time or 0.0) / config.flight.duration_s
@@ -285,6 +302,13 @@ def _reason(
         for name, part in parts.items()
         if part["safety_factor"] < config.constraints.safety_factor_min
     ]
+    lowest = config.constraints.first_frequency_min_hz
+    if lowest is not None:
+        reasons += [
+            f"{name}: first natural frequency {part['first_frequency']:.1f} Hz below {lowest:g} Hz"
+            for name, part in parts.items()
+            if part["first_frequency"] < lowest
+        ]
     if not flight.completed:
         reasons.append(_flight_reason(flight))
     for name, (value, limit) in _short_clearances(config, clearances).items():

@@ -33,6 +33,7 @@ from codesign.geometry.part import Part, parameter_units
 from codesign.urdf import RobotDescription
 
 if TYPE_CHECKING:
+    from codesign.analysis import Confirmation
     from codesign.cache import PartCache
     from codesign.evaluation import Evaluation
 
@@ -130,6 +131,12 @@ class Study:
         from codesign.pipeline import evaluate
 
         return evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
+
+    def confirm(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Confirmation]:
+        """Parts of a design by name, as analysed and with full geometry on a fine mesh (some seconds a part)."""
+        from codesign.pipeline import confirm_parts
+
+        return confirm_parts(self, self.space.design(theta))
 
 
 def shipped_studies() -> list[str]:

@@ -59,3 +59,24 @@ def test_missing_supports_are_named(supports, words):
 def test_unknown_face_lists_the_known_ones():
     with pytest.raises(ValueError, match="unknown face 'seat'"):
         fem.solve_static(bar(), STEEL, [fem.Support("seat")], [])
+
+
+def test_meshes_of_four_and_ten_node_tetrahedra_are_the_same_model():
+    mesh = bar((2, 1, 1))
+    corners = np.unique(mesh.tets[:, :4])
+    index = np.full(len(mesh.nodes), -1)
+    index[corners] = np.arange(len(corners))
+    linear = fem.TetMesh(np.array(mesh.nodes[corners]), index[mesh.tets[:, :4]].astype(np.int32))
+    solve = [fem.Support(ROOT)], [fem.Force(TIP, [0, 0, 100.0])]
+    of_ten, of_four = (fem.solve_static(m, STEEL, *solve) for m in (mesh, linear))
+    assert len(linear.nodes) == len(mesh.nodes)
+    assert of_four.work == pytest.approx(of_ten.work, rel=1e-10)
+    assert of_four.peak_stress == pytest.approx(of_ten.peak_stress, rel=1e-8)
+
+
+def test_one_factorisation_serves_several_load_cases():
+    mesh = bar()
+    system = fem.StaticSystem(mesh, STEEL, [fem.Support(ROOT)])
+    down, side = fem.Force(TIP, [0, 0, -100.0]), fem.Force(TIP, [0, 30.0, 0])
+    parts = system.solve([down]).displacement + system.solve([side]).displacement
+    np.testing.assert_allclose(system.solve([down, side]).displacement, parts, atol=1e-10 * np.abs(parts).max())

@@ -4,6 +4,8 @@ Compiled core of codesign: rigid-body dynamics, flight, finite elements.
 
 from __future__ import annotations
 import collections.abc
+import numpy
+import numpy.typing
 import typing
 from . import dynamics
 from . import fem
@@ -23,6 +25,8 @@ class PartCase:
     """
     One part and its load case; supports and loads name surface faces.
     """
+
+    size: fem.SizeField
     def __init__(
         self,
         *,
@@ -35,20 +39,82 @@ class PartCase:
         ],
         settings: fem.StaticSettings = ...,
         facet_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 25.0,
+        tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.05,
+        max_refinements: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
+    @property
+    def loads(
+        self,
+    ) -> list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]: ...
+    @property
+    def material(self) -> fem.Material: ...
+    @property
+    def max_refinements(self) -> int:
+        """
+        0: one pass
+        """
+    @max_refinements.setter
+    def max_refinements(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def modes(self) -> int:
+        """
+        natural frequencies wanted
+        """
+    @modes.setter
+    def modes(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def settings(self) -> fem.StaticSettings: ...
+    @property
+    def supports(self) -> list[fem.Support]: ...
+    @property
+    def surface(self) -> fem.SurfaceMesh: ...
+    @property
+    def tolerance(self) -> float:
+        """
+        relative, of the peak stress
+        """
+    @tolerance.setter
+    def tolerance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
 class PartAnalysis:
     """
     Mesh, static result and wall-clock times.
     """
     @property
+    def change(self) -> float:
+        """
+        of the peak stress by the last refinement, relative
+        """
+    @property
+    def converged(self) -> bool:
+        """
+        estimated error, and the change if there is one, within the tolerance
+        """
+    @property
+    def frequencies(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (modes,) Hz, ascending, of the whole part
+        """
+    @property
     def mesh(self) -> fem.TetMesh: ...
     @property
     def mesh_seconds(self) -> float: ...
     @property
+    def refinements(self) -> int: ...
+    @property
     def result(self) -> fem.StaticResult: ...
     @property
+    def size(self) -> fem.SizeField:
+        """
+        SizeField of the mesh
+        """
+    @property
     def solve_seconds(self) -> float: ...
+    @property
+    def stopped(self) -> str:
+        """
+        why refining ended without convergence; empty otherwise
+        """
 
 class DesignResult:
     @property

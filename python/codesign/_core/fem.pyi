@@ -15,9 +15,11 @@ __all__: list[str] = [
     "BodyForce",
     "Disc",
     "Force",
+    "LinearSolver",
     "MassProperties",
     "Material",
     "MeshQuality",
+    "NaturalModes",
     "Pressure",
     "Selection",
     "SizeField",
@@ -33,6 +35,7 @@ __all__: list[str] = [
     "load_surface",
     "load_vector",
     "mass_properties",
+    "natural_modes",
     "selected_nodes",
     "selected_triangles",
     "tetrahedralize",
@@ -338,7 +341,44 @@ class Acceleration:
 class BodyForce:
     def __init__(self, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]) -> None: ...
 
+class LinearSolver:
+    """
+    Members:
+
+      automatic
+
+      direct
+
+      iterative
+    """
+
+    __members__: typing.ClassVar[dict[str, LinearSolver]]
+    automatic: typing.ClassVar[LinearSolver]
+    direct: typing.ClassVar[LinearSolver]
+    iterative: typing.ClassVar[LinearSolver]
+    @typing.overload
+    def __eq__(self, other: LinearSolver) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: LinearSolver) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
 class StaticSettings:
+    solver: LinearSolver
     def __init__(self) -> None: ...
     @property
     def copies(self) -> int: ...
@@ -348,6 +388,13 @@ class StaticSettings:
     def exclusion_distance(self) -> float: ...
     @exclusion_distance.setter
     def exclusion_distance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def memory_limit(self) -> float:
+        """
+        bytes for the factor
+        """
+    @memory_limit.setter
+    def memory_limit(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
     def residual_tolerance(self) -> float: ...
     @residual_tolerance.setter
@@ -378,6 +425,11 @@ class StaticResult:
         """
     @property
     def equations(self) -> int: ...
+    @property
+    def iterations(self) -> int:
+        """
+        of conjugate gradients; 0: solved by the factor
+        """
     @property
     def max_displacement(self) -> float:
         """
@@ -441,6 +493,21 @@ class StaticResult:
         J, load times displacement
         """
 
+class NaturalModes:
+    """
+    Free vibration of a part.
+    """
+    @property
+    def frequency(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (k,) Hz, ascending; 0 for rigid motions
+        """
+    @property
+    def shape(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (3 n, k) columns, modal mass 1 kg
+        """
+
 class StaticSystem:
     """
     A model factorised once for many load cases.
@@ -448,6 +515,7 @@ class StaticSystem:
     def __init__(
         self, mesh: TetMesh, material: Material, supports: collections.abc.Sequence[Support], settings: StaticSettings
     ) -> None: ...
+    def natural_modes(self, count: typing.SupportsInt | typing.SupportsIndex) -> NaturalModes: ...
     def solve(
         self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
     ) -> StaticResult: ...
@@ -494,6 +562,12 @@ def mass_properties(surface: SurfaceMesh, density: typing.SupportsFloat | typing
         ValueError: density is not positive.
     """
 
+def natural_modes(
+    mesh: TetMesh,
+    material: Material,
+    supports: collections.abc.Sequence[Support],
+    count: typing.SupportsInt | typing.SupportsIndex,
+) -> NaturalModes: ...
 def selected_nodes(mesh: TetMesh, selection: Selection) -> list[int]:
     """
     Nodes that a selection holds, those of its faces included, sorted.

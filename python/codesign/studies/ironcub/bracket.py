@@ -204,7 +204,7 @@ class JetpackBracket(Part):
         if settings.load not in ("uniform", "thrust_line"):
             raise GeometryError(f"{self.name}: load = {settings.load!r}: there are uniform and thrust_line")
         supports = list(settings.supports) if settings.support == "published" else ["pad", "screw_seat"]
-        surface = self.fem_surface(settings.geometry, support=settings.support)
+        surface = self.fem_surface(settings.geometry, settings.segments, support=settings.support)
         floor = math.pi * SEAT_RADIUS**2 / 2.0 - len(SEAT_HOLES) / 2.0 * math.pi * SEAT_HOLE_RADIUS**2
         moment = 2.0 / 3.0 * SEAT_RADIUS**3 - sum(y * math.pi * SEAT_HOLE_RADIUS**2 for _, y in SEAT_HOLES if y > 0.0)
         aside = np.array([0.0, moment / floor, 0.0]) * MILLIMETRE  # centroid of half of the floor
@@ -227,7 +227,7 @@ class JetpackBracket(Part):
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
         """Fine along lines 2 mm behind each crease, on the side away from the clamp."""
-        fine = settings.accuracy == "fine"
+        fine = settings.accuracy != "optimisation"
         base, size, growth, radius = (8.0, 0.5, 0.35, 2.0) if fine else (12.0, 0.8, 0.5, 1.5)
         across = np.array([0.0, self.half_width, 0.0])
         behind = 2.0 * MILLIMETRE * self.slab_direction

@@ -229,7 +229,7 @@ class ForearmJetSupport(Part):
         )
         return native_case(
             settings,
-            self.fem_surface(settings.geometry),
+            self.fem_surface(settings.geometry, settings.segments),
             self._size_field(settings),
             [clamp(*settings.supports)],
             [traction],
@@ -238,7 +238,7 @@ class ForearmJetSupport(Part):
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
         """Arcs inside the fillets at both ends of the rod, finest on the side of the ring, and the rod itself."""
-        fine = settings.accuracy == "fine"
+        fine = settings.accuracy != "optimisation"
         base, fillet, growth, rod = (8.0, 0.35, 0.35, 4.0) if fine else (12.0, 0.5, 0.5, 5.0)
         start, end = self.rod_ends
         turn = np.radians(np.linspace(-20.0, 20.0, 9))

@@ -1,0 +1,105 @@
+"""Error estimate of the peak stress against the true error, on designs spread over the grid; table of docs/fem.md.
+
+python benchmarks/stress_error.py [every k-th design, 1 if omitted]
+
+True error: difference from the fine mesh with half its edge length around the peak, on a surface of 192 chords a
+circle.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import replace
+from typing import Any
+
+import codesign
+from codesign import _core, fem
+from codesign.analysis import StressSettings
+from codesign.geometry.part import Part
+from codesign.pipeline import stress_settings
+from codesign.studies.ironcub.bracket import JetpackBracket
+from codesign.studies.ironcub.forearm import ForearmJetSupport
+
+BRACKETS = [
+    (1, 48),
+    (10, 100),
+    (15, 42),
+    (25, 80),
+    (33, 40),
+    (40, 60),
+    (60, 60),
+    (79, 100),
+]  # angle [deg], distance [mm]
+FOREARMS = [
+    (80, 50),
+    (80, 108),
+    (88, 50),
+    (94, 130),
+    (100, 150),
+    (110, 50),
+    (120, 100),
+    (120, 150),
+]  # offset, length [mm]
+MEGA = 1e6
+
+
+class Smooth(Part):
+    """A part with a finer surface."""
+
+    def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> fem.SurfaceMesh:
+        """Twice as many chords a circle."""
+        return super().fem_surface(geometry, 2 * segments, **variant)
+
+
+class SmoothBracket(Smooth, JetpackBracket):
+    """Bracket with a finer surface."""
+
+
+class SmoothForearm(Smooth, ForearmJetSupport):
+    """Forearm support with a finer surface."""
+
+
+def reference(part: Part, settings: StressSettings) -> _core.PartAnalysis:
+    """On the fine mesh, halved around the peak whatever its estimate."""
+    case = part.stress_case(replace(settings, accuracy="fine"))  # type: ignore[attr-defined]
+    case.tolerance, case.max_refinements = 1e-9, 1
+    return _core.analyse_part(case)
+
+
+def row(part: Part, smooth: Part, settings: StressSettings) -> bool:
+    """Prints one design; whether the true error lies inside the estimate."""
+    start = time.process_time()
+    analysed = _core.analyse_part(part.stress_case(settings))  # type: ignore[attr-defined]
+    seconds = time.process_time() - start
+    result, exact = analysed.result, reference(smooth, settings).result
+    deviation = result.peak_stress / exact.peak_stress - 1.0
+    estimate = result.stress_error / result.peak_stress
+    holds = abs(result.peak_stress - exact.peak_stress) <= result.stress_error
+    values = "×".join(f"{value:g}" for value in part.parameters.values())
+    print(
+        f"| {part.name} {values} | {result.peak_stress / MEGA:.2f} | {exact.peak_stress / MEGA:.2f} "
+        f"| {100 * deviation:+.1f} % | {100 * estimate:.1f} % | {'yes' if holds else 'NO'} "
+        f"| {100 * exact.stress_error / exact.peak_stress:.1f} % | {seconds:.2f} |",
+        flush=True,
+    )
+    return holds
+
+
+def main() -> None:
+    step = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    config = codesign.load_study("ironcub").config
+    print("| part | peak, MPa | reference | true error | estimate | inside | estimate of the reference | CPU s |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    inside = []
+    for kind, smooth, name, designs in (
+        (JetpackBracket, SmoothBracket, "jetpack_bracket", BRACKETS),
+        (ForearmJetSupport, SmoothForearm, "forearm_support", FOREARMS),
+    ):
+        settings = stress_settings(config, name)
+        inside += [row(kind(*theta), smooth(*theta), settings) for theta in designs[::step]]
+    print(f"\n{sum(inside)} of {len(inside)} true errors lie inside the estimate")
+
+
+if __name__ == "__main__":
+    main()
