@@ -317,7 +317,10 @@ def draw_fronts(path: Path, data: ReportData, rows: Sequence[Row], flown: Mappin
         if data.baseline_vector is not None:
             right.scatter(*data.baseline_vector[:2], 34, style.ORIGINAL, "D", edgecolors="white", label="original")
         right.set(title="here (rms objectives)", xlabel=data.objectives[0].title, ylabel=data.objectives[1].title)
-        right.set(xlim=data.view(0), ylim=data.view(1))
+        seen = np.vstack([own[data.front], there, data.vector(data.baseline)])[:, :2]
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        margin = 0.06 * (high - low)
+        right.set(xlim=(low[0] - margin[0], high[0] + margin[0]), ylim=(low[1] - margin[1], high[1] + margin[1]))
         figure.colorbar(dots, ax=right, aspect=32, pad=0.02, label="thrust (N)")
         for axes in (left, right):
             axes.legend(loc="upper right")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,14 +12,12 @@ import meshio
 import numpy as np
 
 from codesign import _core
-from codesign.analysis import part_case
 from codesign.design import Design
-from codesign.errors import GeometryError
 from codesign.files import write_text
 from codesign.geometry.component import Component
 from codesign.geometry.export import export_parts
 from codesign.geometry.part import Part
-from codesign.pipeline import build_parts, build_robot, stress_settings
+from codesign.pipeline import build_parts, build_robot, evaluate_with_fields
 from codesign.urdf_package import write_urdf_package
 
 if TYPE_CHECKING:
@@ -34,19 +33,16 @@ def export_design(study: Study, theta: Mapping[str, float], out: str | Path) -> 
     """
     out = Path(out)
     design = study.space.design(theta)
-    evaluation = study.evaluate(design)
-    if evaluation.status == "failed":
-        raise GeometryError(evaluation.reason or "the design could not be evaluated")
-    out.mkdir(parents=True, exist_ok=True)
-    files = [write_text(out / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1))]
     parts = build_parts(study, design)
     components = placed_components(study, design, parts)
-    files += export_parts([component for component, _ in components], out / "cad")
-    files.append(_write_robot(study, design, components, out / "robot"))
-    for name, part in parts.items():
-        analysis = _core.analyse_part(part_case(part, stress_settings(study.config, name)))
-        files.append(write_vtu(analysis, out / "stress" / f"{name}.vtu"))
-    return files
+    out.mkdir(parents=True, exist_ok=True)
+    with ThreadPoolExecutor(1) as beside:  # the native chain releases the interpreter's lock
+        chain = beside.submit(evaluate_with_fields, study, design)
+        drawn = export_parts([component for component, _ in components], out / "cad")
+        drawn.append(_write_robot(study, design, components, out / "robot"))
+        evaluation, analyses, _ = chain.result()
+    files = [write_text(out / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1)), *drawn]
+    return files + [write_vtu(analysis, out / "stress" / f"{name}.vtu") for name, analysis in analyses.items()]
 
 
 def placed_components(study: Study, design: Design, parts: Mapping[str, Part]) -> list[tuple[Component, str]]:

@@ -17,7 +17,6 @@ import numpy as np
 import yourdfpy
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
-from scipy.stats import qmc
 
 from codesign.dynamics import hull_distances
 from codesign.errors import MeshError, StudyError, UrdfError
@@ -106,6 +105,8 @@ def range_postures(ranges: Mapping[str, tuple[float, float]], count: int, seed: 
     ends = np.tile(middle, (2 * len(names), 1))
     ends[np.arange(len(names)), np.arange(len(names))] = lower
     ends[len(names) + np.arange(len(names)), np.arange(len(names))] = upper
+    from scipy.stats import qmc  # 0.4 s to import, needed here only
+
     sobol = qmc.Sobol(len(names), seed=seed).random_base2(max(0, int(np.ceil(np.log2(max(count, 1))))))[:count]
     samples = np.vstack([middle, ends, lower + sobol * (upper - lower)])
     return {name: samples[:, k] for k, name in enumerate(names)}

@@ -46,12 +46,26 @@ def evaluate(study: Study, design: Design, trajectory: str | None = None, cache:
     """
     find_trajectory(study.config, trajectory or study.config.flight.trajectory)
     try:
-        return _evaluate(study, design, trajectory, cache)
+        return _evaluate(study, design, trajectory, cache)[0]
     except CodesignError as error:
         return Evaluation.failure(design.to_dict(), f"{type(error).__name__}: {error}", provenance(study.hash))
 
 
-def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartCache | None) -> Evaluation:
+def evaluate_with_fields(
+    study: Study, design: Design, trajectory: str | None = None
+) -> tuple[Evaluation, dict[str, _core.PartAnalysis], dyn.FlightLog]:
+    """As `evaluate`, together with what its numbers were read from: stress field of each part, histories of the flight.
+
+    Raises: CodesignError where the chain does.
+    """
+    find_trajectory(study.config, trajectory or study.config.flight.trajectory)
+    evaluation, result = _evaluate(study, design, trajectory, None)
+    return evaluation, dict(zip(evaluation.parts, result.parts, strict=True)), result.flight
+
+
+def _evaluate(
+    study: Study, design: Design, trajectory: str | None, cache: PartCache | None
+) -> tuple[Evaluation, _core.DesignResult]:
     start = time.perf_counter()
     config = study.configured(design)
     settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory))
@@ -80,7 +94,7 @@ def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartC
     constraints, violations = _constraints(config, documents, flight, clearances)
     feasible = not any(violations.values())
     lost = not flight.completed
-    return Evaluation(
+    evaluation = Evaluation(
         design=design.to_dict(),
         status="feasible" if feasible else "infeasible",
         reason=None if feasible else _reason(config, documents, flight, clearances),
@@ -94,6 +108,7 @@ def _evaluate(study: Study, design: Design, trajectory: str | None, cache: PartC
         seconds={"geometry": built - start, **result.seconds, "total": time.perf_counter() - start},
         provenance=provenance(study.hash),
     )
+    return evaluation, result
 
 
 def build_parts(study: Study, design: Mapping[str, float], config: StudyConfig | None = None) -> dict[str, Part]:

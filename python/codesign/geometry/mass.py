@@ -20,6 +20,11 @@ class MassProperties:
     inertia: Vector
     volume: float
 
+    def mirrored(self, axis: str) -> MassProperties:
+        """Those of the mirror image in the plane through the origin normal to "x", "y" or "z"."""
+        signs = np.where(np.arange(3) == "xyz".index(axis), -1.0, 1.0)
+        return MassProperties(self.mass, self.com * signs, self.inertia * np.outer(signs, signs), self.volume)
+
     @property
     def principal_moments(self) -> Vector:
         """(3,) principal moments of inertia [kg m²], ascending."""

@@ -7,6 +7,7 @@ import math
 import os
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY, dataclass
+from functools import lru_cache
 from typing import Any
 
 from codesign.errors import GeometryError
@@ -116,7 +117,7 @@ class Part(ABC):
 
         Raises: GeometryError if it is not one body with the expected holes and all named faces.
         """
-        return _checked(self.shape(), resolution, self.through_holes()).tidied()
+        return _solid(self, resolution)
 
     def surface(self, segments: int = 48) -> SurfaceMesh:
         """Closed surface in metres with named faces; `segments`: chords on a full circle (fewer on small ones)."""
@@ -128,11 +129,7 @@ class Part(ABC):
 
     def mass_properties(self) -> MassProperties:
         """Mass, centre of mass and inertia of the true curved solid (relative error below 1e-5), part frame, SI."""
-        moments = []
-        for refine in (1, 2):
-            solid = _checked(self.shape(), Resolution(MASS_SEGMENTS, refine=refine), self.through_holes())
-            moments.append(volume_moments(solid.points, solid.triangles))
-        return mass_properties(extrapolate(*moments), self.density)
+        return mass_properties(_moments(self), self.density)
 
     @property
     def title(self) -> str:
@@ -169,10 +166,34 @@ class MirroredPart(Part):
         """As the original."""
         return self.original.through_holes()
 
+    def solid(self, resolution: Resolution = FEM_RESOLUTION) -> Solid:
+        """The mirror image of the original's mesh."""
+        return self.original.solid(resolution).mirrored(self.axis)
+
+    def mass_properties(self) -> MassProperties:
+        """Those of the original, mirrored."""
+        return self.original.mass_properties().mirrored(self.axis)
+
     @property
     def parameters(self) -> dict[str, float]:
         """Those of the original."""
         return self.original.parameters
+
+
+@lru_cache(maxsize=8)
+def _solid(part: Part, resolution: Resolution) -> Solid:
+    """Mesh of a part; the last ones are kept, since mass, surface and files ask for the same."""
+    return _checked(part.shape(), resolution, part.through_holes()).tidied()
+
+
+@lru_cache(maxsize=64)
+def _moments(part: Part) -> Vector:
+    """Volume moments (10,) in mm of the true curved solid."""
+    moments = []
+    for refine in (1, 2):
+        solid = _checked(part.shape(), Resolution(MASS_SEGMENTS, refine=refine), part.through_holes())
+        moments.append(volume_moments(solid.points, solid.triangles))
+    return extrapolate(*moments)
 
 
 def _checked(shape: Shape, resolution: Resolution, genus: int | None = None) -> Solid:

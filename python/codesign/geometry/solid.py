@@ -39,6 +39,15 @@ class Solid:
         chosen: Indices = self.triangles[wanted[self.face]]
         return chosen
 
+    def __post_init__(self) -> None:
+        for array in (self.points, self.triangles, self.face):  # meshes are shared
+            array.flags.writeable = False
+
+    def mirrored(self, axis: str) -> Solid:
+        """The mirror image in the plane through the origin normal to "x", "y" or "z"."""
+        signs = np.where(np.arange(3) == "xyz".index(axis), -1.0, 1.0)
+        return Solid(self.points * signs, self.triangles[:, ::-1].copy(), self.face, self.face_names)
+
     def tidied(self) -> Solid:
         """The same surface without the tiny edges and flat triangles that booleans leave; see `tidy`."""
         return Solid(*tidy(self.points, self.triangles, self.face), self.face_names)

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from codesign import _core
-from codesign.analysis import part_case
 from codesign.evaluation import Evaluation
-from codesign.flight_setup import flight_settings, joint_names
-from codesign.pipeline import build_parts, build_robot, stress_settings
+from codesign.flight_setup import joint_names
+from codesign.pipeline import evaluate_with_fields
 from codesign.report.details import Detail, FlightHistory, StressField, flight_history
 
 
@@ -22,12 +21,9 @@ def compute_detail(study: Any, evaluation: Evaluation) -> Detail:
     design = study.space.design(evaluation.design)
     config = study.configured(design)
     trajectory = evaluation.flight.get("trajectory") or config.flight.trajectory
-    settings = flight_settings(config.flight, config.trajectories[trajectory])
-    parts = build_parts(study, design, config)
-    cases = [part_case(part, stress_settings(config, name)) for name, part in parts.items()]
-    result = _core.evaluate(cases, build_robot(study, design).to_text(), settings)
-    fields = {name: stress_field(analysis) for name, analysis in zip(parts, result.parts, strict=True)}
-    return Detail(evaluation, fields, history(config.flight, trajectory, result.flight))
+    _, analyses, flight = evaluate_with_fields(study, design, trajectory)
+    fields = {name: stress_field(analysis) for name, analysis in analyses.items()}
+    return Detail(evaluation, fields, history(config.flight, trajectory, flight))
 
 
 def history(flight: Any, trajectory: str, log: Any) -> FlightHistory:

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from codesign.errors import CodesignError
-from codesign.report.figures import designs, flights, fronts, robustness, search, solids
+from codesign.report.figures import designs, flights, fronts, robustness, search, solids, style
 from codesign.report.figures.data import FigureData
-from codesign.report.figures.style import style
 
 logger = logging.getLogger(__name__)
 
@@ -48,7 +47,7 @@ def write_figures(data: FigureData, folder: Path, names: tuple[str, ...] | None 
     """Draws the figures (all, or those named) that the run has data for; a figure that fails is logged and left out."""
     paths: list[Path] = []
     folder.mkdir(parents=True, exist_ok=True)
-    with style():
+    with style.style():
         for kind in FIGURES:
             if names is not None and kind.name not in names:
                 continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,10 @@ FLAME_THRUST = 250.0  # N
 
 
 def stress(data: FigureData) -> Any:
-    """Von Mises stress on every part of the original and of the recommended design, one scale a part."""
+    """Von Mises stress on every part of the original and of the recommended design, one scale a part.
+
+    The scale ends at the peak that decides the safety factor; beyond it lie clamped edges, where stress has no limit.
+    """
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
@@ -39,19 +43,19 @@ def stress(data: FigureData) -> Any:
     figure = Figure(figsize=(style.PAGE, 2.3 * len(shown)))
     grid = np.array(figure.subplots(len(shown), len(parts), squeeze=False))
     for column, part in enumerate(parts):
-        highest = max(float(detail.parts[part].von_mises.max()) for _, detail in shown.values())
+        highest = max(detail.parts[part].peak for _, detail in shown.values())
         for row, (name, (evaluation, detail)) in enumerate(shown.items()):
             axes = grid[row, column]
             _picture(axes, _stress_picture(detail.parts[part], highest))
             numbers = evaluation.parts.get(part, {})
-            factor = f"safety factor {numbers['safety_factor']:.1f}" if numbers.get("safety_factor") else ""
-            axes.set_title(f"{words(part)}, {name}", pad=2)
-            axes.text(0.0, 0.0, factor, transform=axes.transAxes, va="bottom", fontsize=7, color=style.MUTED)
+            factor = f": safety factor {numbers['safety_factor']:.1f}" if numbers.get("safety_factor") else ""
+            axes.set_title(f"{words(part)}, {name}{factor}", pad=2)
         bar = figure.colorbar(
             ScalarMappable(Normalize(0.0, highest / 1e6), style.stress_colours()),
             ax=grid[:, column],
             aspect=40,
             pad=0.02,
+            extend="max",
         )
         bar.set_label("von Mises stress (MPa)")
         bar.outline.set_visible(False)
@@ -82,7 +86,8 @@ def parts_on_robot(data: FigureData) -> Any:
         view = view or fitting_view(near, *facing(base), aspect=0.95)
         _picture(axes, render(bodies, view, 760, 800))
         values = ", ".join(f"{data.run.label(v).lower()} {evaluation.design[v.name]:g}" for v in data.run.variables)
-        axes.set_title(f"{words(name)}: {values}", loc="center", fontsize=7)
+        axes.set_title(words(name), loc="center")
+        axes.text(0.5, -0.02, textwrap.fill(values, 48), transform=axes.transAxes, ha="center", va="top", fontsize=7)
     return figure
 
 
