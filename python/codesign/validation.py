@@ -47,7 +47,7 @@ def validate(
         progress: called with the disturbed flights done and their total number.
     Raises: StoreError (no run, being written), DesignError (no such design), StudyError (no such trajectory).
     """
-    from codesign.validate import validate as evaluate_on
+    from codesign.revisit import revisit
 
     directory = Path(run_directory)
     study = study if study is not None else study_of(directory)
@@ -61,7 +61,7 @@ def validate(
     for name in names:
         if name not in study.config.trajectories:
             raise StudyError(f"no trajectory {name!r}; this study has {', '.join(study.trajectories)}")
-    records = evaluate_on(directory, names, list(chosen.values()), study=study, workers=workers)
+    records = revisit(directory, names, list(chosen.values()), study=study, workers=workers)
     known = {(tuple(r.evaluation.design.values()), r.trajectory): r.evaluation for r in records}
     flights = [
         _calm(role, design, name, known[tuple(study.space.design(design).to_dict().values()), name])

@@ -57,7 +57,9 @@ def write_figures(data: FigureData, folder: Path, names: tuple[str, ...] | None 
                 logger.warning("figure %s: %s", kind.name, error)
                 continue
             if figure is not None:
-                paths += [_save(figure, folder / f"{kind.name}.{suffix}") for suffix in ("png", "pdf")]
+                paths.append(_save(figure, folder / f"{kind.name}.png"))
+                figure.set_layout_engine("none")  # as laid out for the PNG, which takes as long as drawing
+                paths.append(_save(figure, folder / f"{kind.name}.pdf"))
     return tuple(paths)
 
 

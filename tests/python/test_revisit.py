@@ -7,8 +7,8 @@ import pytest
 from codesign.errors import StoreError
 from codesign.export import export
 from codesign.optimization import optimize, resume
+from codesign.revisit import revisit
 from codesign.runs import compare_runs, list_runs, load_run
-from codesign.validate import validate
 from fake_study import study
 
 
@@ -16,11 +16,11 @@ def test_validates_the_front_and_keeps_the_search_as_it_was(tmp_path) -> None:
     log = tmp_path / "log"
     fake = study(log=str(log))
     run = optimize(fake, out=tmp_path / "run", cache=None, generations=2)
-    records = validate(tmp_path / "run", ["hover", "walk"])
+    records = revisit(tmp_path / "run", ["hover", "walk"])
     assert [record.grid for record in records[::2]] == [record.grid for record in run.front]
     assert {record.evaluation.flight["trajectory"] for record in records} == {"hover", "walk"}
     lines = log.read_text().splitlines()
-    again = validate(tmp_path / "run", ["hover", "walk"])
+    again = revisit(tmp_path / "run", ["hover", "walk"])
     assert again == records
     assert log.read_text().splitlines() == lines
     after = load_run(tmp_path / "run")
@@ -32,7 +32,7 @@ def test_validates_the_front_and_keeps_the_search_as_it_was(tmp_path) -> None:
 def test_validates_given_designs(tmp_path) -> None:
     optimize(study(), out=tmp_path / "run", cache=None, generations=1)
     design = {"a": 1.5, "b": 1.0, "c": 0.5}
-    (record,) = validate(tmp_path / "run", ["hover"], [design], cache=None)
+    (record,) = revisit(tmp_path / "run", ["hover"], [design], cache=None)
     assert record.evaluation.design == design
     assert record.number is None
 

@@ -18,7 +18,7 @@ from codesign.search import Grid
 from codesign.store import Record, RunStore
 
 
-def validate(
+def revisit(
     out: str | Path,
     trajectories: Sequence[str],
     designs: Sequence[Mapping[str, float]] | None = None,
