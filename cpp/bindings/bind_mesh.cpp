@@ -179,6 +179,16 @@ void bind_quality(py::module_& m) {
       .def_readonly("area", &MeshQuality::area, "m²");
 }
 
+void bind_report(py::module_& m) {
+  py::class_<MeshReport>(m, "MeshReport", "What was done to get a sound mesh.")
+      .def_readonly("collapsed", &MeshReport::collapsed, "short edges of the surface")
+      .def_readonly("collapse_distance", &MeshReport::collapse_distance,
+                    "m, the farthest that a point of the surface moved for that")
+      .def_readonly("crumbs", &MeshReport::crumbs,
+                    "elements removed that hung on the mesh by a point or an edge")
+      .def_readonly("peeled", &MeshReport::peeled, "flat boundary elements removed");
+}
+
 void bind_tet_mesh(py::module_& m) {
   const std::map<std::string, Triangles> no_faces;
   py::class_<TetMesh>(m, "TetMesh", R"(Ten-node tetrahedra with named boundary faces.
@@ -202,6 +212,7 @@ Raises:
           [](py::object self) { return view(self.cast<const TetMesh&>().boundary_face, self); },
           "(b,) index into face_names")
       .def_readonly("face_names", &TetMesh::face_names)
+      .def_readonly("report", &TetMesh::report, "MeshReport of how it was made")
       .def_property_readonly("quality", &measure_quality, "MeshQuality of the elements")
       .def("__repr__", [](const TetMesh& mesh) {
         return py::str("TetMesh({} nodes, {} tetrahedra)")
@@ -210,19 +221,22 @@ Raises:
 }
 
 TetMesh make_tets(const SurfaceMesh& surface, const std::variant<double, SizeField>& edge_length,
-                  double feature_angle_deg, double facet_distance, double facet_angle_deg,
-                  double radius_edge, double sliver_angle_deg, double flat_angle_deg,
-                  double time_limit, std::size_t max_vertices, bool check_intersections) {
+                  double feature_angle_deg, double simplify, double facet_distance,
+                  double facet_angle_deg, double radius_edge, double sliver_angle_deg,
+                  double flat_angle_deg, bool curved, double time_limit, std::size_t max_vertices,
+                  bool check_intersections) {
   const SizeField size = std::holds_alternative<double>(edge_length)
                              ? SizeField{std::get<double>(edge_length), {}}
                              : std::get<SizeField>(edge_length);
   MeshOptions options;
   options.feature_angle = feature_angle_deg * kDegree;
+  options.simplify = simplify;
   options.facet_distance = facet_distance;
   options.facet_angle = facet_angle_deg * kDegree;
   options.radius_edge = radius_edge;
   options.sliver_angle = sliver_angle_deg * kDegree;
   options.flat_angle = flat_angle_deg * kDegree;
+  options.curved = curved;
   options.time_limit = time_limit;
   options.max_vertices = max_vertices;
   options.check_intersections = check_intersections;
@@ -232,10 +246,11 @@ TetMesh make_tets(const SurfaceMesh& surface, const std::variant<double, SizeFie
 void bind_mesher(py::module_& m) {
   const MeshOptions defaults;
   m.def("tetrahedralize", &make_tets, "surface"_a, "edge_length"_a, py::kw_only(),
-        "feature_angle_deg"_a = 40.0, "facet_distance"_a = defaults.facet_distance,
-        "facet_angle_deg"_a = 25.0, "radius_edge"_a = defaults.radius_edge,
-        "sliver_angle_deg"_a = 6.0, "flat_angle_deg"_a = 6.0, "time_limit"_a = defaults.time_limit,
-        "max_vertices"_a = defaults.max_vertices,
+        "feature_angle_deg"_a = 40.0, "simplify"_a = defaults.simplify,
+        "facet_distance"_a = defaults.facet_distance, "facet_angle_deg"_a = 25.0,
+        "radius_edge"_a = defaults.radius_edge, "sliver_angle_deg"_a = 12.0,
+        "flat_angle_deg"_a = 6.0, "curved"_a = defaults.curved,
+        "time_limit"_a = defaults.time_limit, "max_vertices"_a = defaults.max_vertices,
         "check_intersections"_a = defaults.check_intersections,
         py::call_guard<py::gil_scoped_release>(),
         R"(Ten-node tetrahedra of the solid inside a closed surface.
@@ -247,11 +262,14 @@ Args:
     surface: closed, outward-oriented, one solid.
     edge_length: m, or a SizeField.
     feature_angle_deg: edges sharper than this are kept.
+    simplify: points of the surface may move this far [m] to get rid of tiny edges and ledges;
+        never more than 0.0005 of its extent and 0.1 of the smallest edge length.
     facet_distance: of boundary sides to the surface, relative to the edge length.
     facet_angle_deg: smallest angle of a boundary side, at most 30.
     radius_edge: largest circumradius over shortest edge, at least 2.
     sliver_angle_deg: elements with a smaller dihedral angle are improved where possible.
     flat_angle_deg: flatter boundary elements on one face are removed.
+    curved: mid-edge nodes of the boundary on the surface instead of on straight edges.
     time_limit: processor seconds.
     max_vertices: of corner nodes.
     check_intersections: look for triangles that cross each other first.
@@ -269,6 +287,7 @@ void bind_mesh(py::module_& m) {
   bind_mass_properties(m);
   bind_size_field(m);
   bind_quality(m);
+  bind_report(m);
   bind_tet_mesh(m);
   bind_mesher(m);
 }

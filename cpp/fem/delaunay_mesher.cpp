@@ -60,8 +60,8 @@ class SolidDomain {
   using Intersection = std::tuple<Point, int, int>;  // point, patch, dimension (0: none)
 
   SolidDomain(const SurfaceMesh& surface, const Patches& patches,
-              const std::vector<FeatureLine>& lines)
-      : patches_(patches), oracle_(surface, patches.of_triangle) {
+              const std::vector<FeatureLine>& lines, const SolidOracle& oracle)
+      : patches_(patches), oracle_(oracle) {
     std::map<int, int> corner_of;  // point of the surface -> corner
     const auto add_corner = [&](int point) {
       const auto [at, fresh] = corner_of.try_emplace(point, static_cast<int>(corners_.size()));
@@ -77,8 +77,6 @@ class SolidDomain {
                          closed && !line.starts_at_corner ? -1 : add_corner(line.points.back()));
     }
   }
-
-  const SolidOracle& oracle() const { return oracle_; }
 
   CGAL::Bbox_3 bbox() const {
     const Vector3d& a = oracle_.lower();
@@ -181,7 +179,7 @@ class SolidDomain {
   }
 
   const Patches& patches_;
-  SolidOracle oracle_;
+  const SolidOracle& oracle_;
   std::vector<Point> corners_;
   std::vector<FeatureCurve> curves_;
   std::vector<std::pair<int, int>> ends_;  // corners at the ends of a curve, -1: none
@@ -269,11 +267,9 @@ void start_complex(const SurfaceMesh& surface, const Patches& patches, const Sol
       complex, domain, criteria, control.nonlinear_growth_of_balls,
       control.maximal_number_of_vertices, control.pointer_to_error_code);
   std::vector<bool> has_line(static_cast<std::size_t>(patches.shells), false);
-  for (std::size_t t = 0; t < patches.neighbours.size(); ++t)
-    for (const int other : patches.neighbours[t])
-      if (other >= 0 &&
-          patches.of_triangle[static_cast<std::size_t>(other)] != patches.of_triangle[t])
-        has_line[static_cast<std::size_t>(patches.shell[t])] = true;
+  for (std::size_t t = 0; t < patches.line.size(); ++t)
+    for (const bool line : patches.line[t])
+      if (line) has_line[static_cast<std::size_t>(patches.shell[t])] = true;
   for (int shell = 0; shell < patches.shells; ++shell)
     if (!has_line[static_cast<std::size_t>(shell)]) insert_points(surface, patches, shell, complex);
   bool surface_found = false;
@@ -284,17 +280,6 @@ void start_complex(const SurfaceMesh& surface, const Patches& patches, const Sol
   if (surface_found) return;
   for (int shell = 0; shell < patches.shells; ++shell)
     insert_points(surface, patches, shell, complex);
-}
-
-// Changes weights of vertices so that slivers give way to better elements.
-void exude(Complex& complex, const MeshOptions& options, const Watch& watch) {
-  namespace set = CGAL::parameters;
-  if (options.sliver_angle <= 0.0) return;
-  const double left = watch.deadline - thread_seconds();
-  if (left <= 0.0) watch.stop();
-  const CGAL::Mesh_optimization_return_code code = CGAL::exude_mesh_3(
-      complex, set::sliver_bound = options.sliver_angle / kDegree, set::time_limit = left);
-  if (code == CGAL::TIME_LIMIT_REACHED) watch.stop();
 }
 
 // The patch of a boundary side; the nearest one where the complex does not know it.
@@ -322,6 +307,7 @@ LinearTets extract(const Complex& complex, const Patches& patches, const SolidOr
       if (fresh) {
         const auto& p = vertex->point();
         mesh.points.emplace_back(p.x(), p.y(), p.z());
+        mesh.dimension.push_back(complex.in_dimension(vertex));
       }
       tet[static_cast<std::size_t>(k)] = at->second;
       labels[static_cast<std::size_t>(k)] = complex.is_in_complex(cell->neighbor(k))
@@ -337,8 +323,8 @@ LinearTets extract(const Complex& complex, const Patches& patches, const SolidOr
 }  // namespace
 
 LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
-                         const std::vector<FeatureLine>& lines, const SizeField& size,
-                         const MeshOptions& options) {
+                         const std::vector<FeatureLine>& lines, const SolidOracle& oracle,
+                         const SizeField& size, const MeshOptions& options) {
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh in every run
   Watch watch{thread_seconds() + options.time_limit, options.time_limit};
   const SizingField length{&size, &watch, 1.0};
@@ -346,12 +332,12 @@ LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
   CGAL::Mesh_error_code error = CGAL::CGAL_MESH_3_NO_ERROR;
   namespace set = CGAL::parameters;
   try {
-    const SolidDomain domain(surface, patches, lines);
+    const SolidDomain domain(surface, patches, lines, oracle);
     const Criteria criteria(
         set::edge_size = length, set::facet_size = length,
         set::facet_angle = options.facet_angle / kDegree, set::facet_distance = distance,
         set::cell_radius_edge_ratio = options.radius_edge, set::cell_size = length);
-    Control control(options.nonlinear_balls);
+    Control control;
     control.maximal_number_of_vertices = options.max_vertices;
     control.pointer_to_error_code = &error;
     Complex complex;
@@ -362,8 +348,7 @@ LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
     if (error == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED)
       throw MeshError("the mesh would need more than " + std::to_string(options.max_vertices) +
                       " vertices (max_vertices): a larger edge length is needed");
-    exude(complex, options, watch);
-    return extract(complex, patches, domain.oracle());
+    return extract(complex, patches, oracle);
   } catch (const CGAL::Failure_exception& e) {
     throw MeshError(std::string("the mesher broke down: ") + e.what());
   }

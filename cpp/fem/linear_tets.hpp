@@ -12,8 +12,9 @@ namespace codesign::fem {
 // Four-node tetrahedra with labelled boundary sides, as they come from the mesher and before mid
 // nodes are added.
 struct LinearTets {
-  std::vector<Eigen::Vector3d> points;         // m
-  std::vector<std::array<int, 4>> tets;        // positive volume
+  std::vector<Eigen::Vector3d> points;   // m
+  std::vector<int> dimension;            // of their place: 0 corner, 1 line, 2 surface, 3 inside
+  std::vector<std::array<int, 4>> tets;  // positive volume
   std::vector<std::array<int, 4>> side_label;  // of the side opposite to each corner; -1 inside
 };
 

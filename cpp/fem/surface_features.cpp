@@ -84,8 +84,15 @@ Patches find_patches(const SurfaceMesh& surface, double feature_angle) {
     const auto other = static_cast<std::size_t>(patches.neighbours[t][static_cast<std::size_t>(k)]);
     return surface.face[t] == surface.face[other] && normals[t].dot(normals[other]) >= cosine;
   };
+  patches.line.assign(normals.size(), {false, false, false});
+  for (std::size_t t = 0; t < normals.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      patches.line[t][static_cast<std::size_t>(k)] =
+          patches.neighbours[t][static_cast<std::size_t>(k)] >= 0 && !smooth(t, k);
   int count = 0;
-  std::tie(patches.of_triangle, count) = connected_groups(patches.neighbours, smooth);
+  std::tie(patches.of_triangle, count) = connected_groups(
+      patches.neighbours,
+      [&](std::size_t t, int k) { return !patches.line[t][static_cast<std::size_t>(k)]; });
   std::tie(patches.shell, patches.shells) =
       connected_groups(patches.neighbours, [](std::size_t, int) { return true; });
   patches.face.assign(static_cast<std::size_t>(count), 0);
@@ -101,16 +108,15 @@ struct LineEdge {
   std::pair<int, int> patches;
 };
 
-// Edges between different patches, each once.
+// Edges that are feature lines, each once.
 std::vector<LineEdge> line_edges(const SurfaceMesh& surface, const Patches& patches) {
   std::vector<LineEdge> edges;
   for (std::size_t t = 0; t < patches.neighbours.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int other = patches.neighbours[t][static_cast<std::size_t>(k)];
-      if (other < 0 || static_cast<int>(t) > other) continue;
+      if (!patches.line[t][static_cast<std::size_t>(k)] || static_cast<int>(t) > other) continue;
       const int p = patches.of_triangle[t];
       const int q = patches.of_triangle[static_cast<std::size_t>(other)];
-      if (p == q) continue;
       const auto row = static_cast<Eigen::Index>(t);
       edges.push_back(
           {surface.triangles(row, k), surface.triangles(row, (k + 1) % 3), std::minmax(p, q)});
@@ -145,7 +151,7 @@ std::vector<FeatureLine> find_feature_lines(const SurfaceMesh& surface, const Pa
   std::vector<FeatureLine> lines;
   std::vector<bool> used(edges.size(), false);
   const auto walk = [&](int start, int e) {
-    FeatureLine line{{start}, is_corner(start)};
+    FeatureLine line{{start}, edges[static_cast<std::size_t>(e)].patches, is_corner(start)};
     for (int at = start; !used[static_cast<std::size_t>(e)];) {
       used[static_cast<std::size_t>(e)] = true;
       at = far_end(e, at);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "fem/surface_mesh.hpp"
@@ -20,14 +21,17 @@ struct Patches {
   std::vector<int> shell;        // (m) separate closed piece of the surface, 0-based
   int shells;
   Neighbours neighbours;
+  std::vector<std::array<bool, 3>> line;  // (m) whether the edge from corner k is a feature line
 };
 Patches find_patches(const SurfaceMesh& surface, double feature_angle);
 
-// The lines between patches, cut into polylines at points where three or more lines meet, where the
-// pair of patches beside the line changes, and where the line itself turns by more than 45 degrees.
+// The feature lines, also those that end inside a patch, cut into polylines at points where three
+// or more lines meet or one ends, where the pair of patches beside the line changes, and where the
+// line itself turns by more than 45 degrees.
 struct FeatureLine {
-  std::vector<int> points;  // indices; first == last on a closed line
-  bool starts_at_corner;    // false only for closed lines without any corner
+  std::vector<int> points;      // indices; first == last on a closed line
+  std::pair<int, int> patches;  // beside it, the smaller first; equal if it ends inside a patch
+  bool starts_at_corner;        // false only for closed lines without any corner
 };
 std::vector<FeatureLine> find_feature_lines(const SurfaceMesh& surface, const Patches& patches);
 

@@ -12,24 +12,19 @@ inline constexpr double kDegree = 3.14159265358979323846 / 180.0;  // rad
 
 struct MeshOptions {
   double feature_angle = 40.0 * kDegree;  // edges sharper than this are kept, rad
+  double simplify = 5e-5;                 // points may move this far to get rid of tiny edges, m
   double facet_distance = 0.06;           // of boundary sides to the surface, relative to the size
   double facet_angle = 25.0 * kDegree;    // smallest angle of a boundary side, rad
   double radius_edge = 2.5;               // largest circumradius / shortest edge of a tetrahedron
-  double sliver_angle = 6.0 * kDegree;    // elements flatter than this are improved, rad; 0: none
+  double sliver_angle = 12.0 * kDegree;   // elements flatter than this are improved, rad
   double flat_angle = 6.0 * kDegree;      // boundary elements flatter than this are peeled, rad
-  bool nonlinear_balls = false;           // sizes along a line follow the size field more closely
+  bool curved = true;                     // mid-edge nodes of the boundary on the surface
   double time_limit = 60.0;               // processor time of this thread, s
   std::size_t max_vertices = 400'000;     // corner nodes
   bool check_intersections = true;        // look for triangles that cross each other first
 };
 
-// What the mesher did besides meshing.
-struct MeshReport {
-  int peeled = 0;  // flat boundary elements removed
-  int crumbs = 0;  // elements removed that hung on the mesh by a point or an edge
-};
-
-// Quadratic, straight-sided tetrahedra of the solid inside `surface`; edge lengths follow `size`.
+// Quadratic tetrahedra of the solid inside `surface`; edge lengths follow `size`.
 // Edges sharper than the feature angle and all borders between different faces are lines of the
 // mesh; each boundary side carries the face of the surface it lies on. The same input gives the
 // same mesh. Throws MeshError: a surface that bounds no solid (check_surface), a mesh that is
@@ -37,6 +32,6 @@ struct MeshReport {
 // reached; std::invalid_argument: options out of range.
 // Source: CGAL 3D Mesh Generation (Delaunay refinement with protecting balls on features).
 TetMesh tetrahedralize(const SurfaceMesh& surface, const SizeField& size,
-                       const MeshOptions& options = {}, MeshReport* report = nullptr);
+                       const MeshOptions& options = {});
 
 }  // namespace codesign::fem

@@ -3,6 +3,7 @@
 from codesign._core.fem import (
     MassProperties,
     MeshQuality,
+    MeshReport,
     SizeField,
     SizeSource,
     SurfaceMesh,
@@ -42,6 +43,7 @@ __all__ = [
     "MassProperties",
     "Material",
     "MeshQuality",
+    "MeshReport",
     "Modes",
     "Pressure",
     "Selection",

@@ -131,6 +131,27 @@ def test_mesh_of_a_cylinder_follows_the_round_side():
     assert radius.max() < 0.01 + 1e-9
 
 
+def test_curved_elements_fill_a_round_part_that_straight_ones_cut_off():
+    """Edges of half the radius: the mid-edge nodes carry the shape."""
+    surface = cylinder(0.01, 0.03, 96)
+    volume = fem.mass_properties(surface, 1.0).volume
+    straight = fem.tetrahedralize(surface, 0.005, facet_distance=0.2, curved=False)
+    curved = fem.tetrahedralize(surface, 0.005, facet_distance=0.2)
+    assert np.array_equal(straight.tets, curved.tets)
+    side = curved.boundary[curved.boundary_face == curved.face_names.index("side")]
+    radius = np.linalg.norm(curved.nodes[side][..., :2], axis=-1)
+    assert np.quantile(radius, 0.05) > 0.00999  # a straight edge would be at 0.0097
+    material = fem.Material("steel", 210e9, 0.3, 1.0)
+
+    def integrated(mesh):  # area of the curved side, from the pressure that balances on it
+        return fem.solve_static(
+            mesh, material, [fem.Support("bottom")], [fem.Acceleration([0.0, 0.0, -1.0])]
+        ).reactions.sum(axis=0)[2]
+
+    assert integrated(straight) < 0.97 * volume
+    assert integrated(curved) == pytest.approx(volume, rel=3e-3)
+
+
 def test_border_between_faces_is_kept_although_it_is_flat():
     """The top of a box in two faces: the border is a line of the mesh, areas are exact."""
     points = np.vstack([CUBE_POINTS, [[0.4, 0, 1], [0.4, 1, 1]]])
@@ -199,25 +220,10 @@ def test_bad_surfaces_are_refused():
         fem.tetrahedralize(apart, 0.3)
 
 
-FLAT_ELEMENTS = pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="facets of the coarse forearm files meet at a few degrees: elements down to 0.1 degrees remain until the "
-    "surface is simplified first",
-)
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "optim1_bracket.stl",
-        "optim3_bracket.stl",
-        pytest.param("optim1_l_forearm.stl", marks=FLAT_ELEMENTS),
-        pytest.param("optim3_l_forearm.stl", marks=FLAT_ELEMENTS),
-    ],
-)
+@pytest.mark.parametrize("name", ["optim1_bracket.stl", "optim1_l_forearm.stl", "optim3_l_forearm.stl"])
 def test_published_parts_mesh_as_they_are(shared_data, name):
     surface = fem.load_surface(shared_data / "parts" / name, scale=1e-3)
     mesh = fem.tetrahedralize(surface, edge_length=0.006)
-    assert mesh.quality.min_dihedral_deg > 1.0
+    assert mesh.quality.min_dihedral_deg > 4.0
+    assert mesh.report.collapse_distance <= 5e-5
     assert mesh.quality.volume == pytest.approx(fem.mass_properties(surface, 1.0).volume, rel=5e-3)

@@ -19,6 +19,7 @@ __all__: list[str] = [
     "MassProperties",
     "Material",
     "MeshQuality",
+    "MeshReport",
     "NaturalModes",
     "Pressure",
     "Selection",
@@ -191,6 +192,31 @@ class MeshQuality:
         of the smallest dihedral angle
         """
 
+class MeshReport:
+    """
+    What was done to get a sound mesh.
+    """
+    @property
+    def collapse_distance(self) -> float:
+        """
+        m, the farthest that a point of the surface moved for that
+        """
+    @property
+    def collapsed(self) -> int:
+        """
+        short edges of the surface
+        """
+    @property
+    def crumbs(self) -> int:
+        """
+        elements removed that hung on the mesh by a point or an edge
+        """
+    @property
+    def peeled(self) -> int:
+        """
+        flat boundary elements removed
+        """
+
 class TetMesh:
     """
     Ten-node tetrahedra with named boundary faces.
@@ -241,6 +267,11 @@ class TetMesh:
     def quality(self) -> MeshQuality:
         """
         MeshQuality of the elements
+        """
+    @property
+    def report(self) -> MeshReport:
+        """
+        MeshReport of how it was made
         """
     @property
     def tets(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, 10]"]:
@@ -583,11 +614,13 @@ def tetrahedralize(
     edge_length: typing.SupportsFloat | typing.SupportsIndex | SizeField,
     *,
     feature_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 40.0,
+    simplify: typing.SupportsFloat | typing.SupportsIndex = 5e-05,
     facet_distance: typing.SupportsFloat | typing.SupportsIndex = 0.06,
     facet_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 25.0,
     radius_edge: typing.SupportsFloat | typing.SupportsIndex = 2.5,
-    sliver_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 6.0,
+    sliver_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 12.0,
     flat_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 6.0,
+    curved: bool = True,
     time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0,
     max_vertices: typing.SupportsInt | typing.SupportsIndex = 400000,
     check_intersections: bool = True,
@@ -602,11 +635,14 @@ def tetrahedralize(
         surface: closed, outward-oriented, one solid.
         edge_length: m, or a SizeField.
         feature_angle_deg: edges sharper than this are kept.
+        simplify: points of the surface may move this far [m] to get rid of tiny edges and ledges;
+            never more than 0.0005 of its extent and 0.1 of the smallest edge length.
         facet_distance: of boundary sides to the surface, relative to the edge length.
         facet_angle_deg: smallest angle of a boundary side, at most 30.
         radius_edge: largest circumradius over shortest edge, at least 2.
         sliver_angle_deg: elements with a smaller dihedral angle are improved where possible.
         flat_angle_deg: flatter boundary elements on one face are removed.
+        curved: mid-edge nodes of the boundary on the surface instead of on straight edges.
         time_limit: processor seconds.
         max_vertices: of corner nodes.
         check_intersections: look for triangles that cross each other first.
