@@ -359,6 +359,46 @@ def view(
     return 0
 
 
+@app.command(epilog="Example: `codesign stress part.stl --scale 1e-3 --fix near:0,0,0 --load 'normal:0,0,1: 0 0 -250'`")
+def stress(
+    part: Annotated[Path, typer.Argument(metavar="PART.stl", help="Closed surface, binary or ASCII STL.")],
+    fix: Annotated[list[str], typer.Option(metavar="SEL", help="Held in all directions; may be repeated.")],
+    load: Annotated[list[str], typer.Option(metavar="'SEL: FX FY FZ'", help="Total force in N; may be repeated.")],
+    scale: Annotated[float, typer.Option(help="Metres per unit of the file and of the selections.")] = 1e-3,
+    material: Annotated[
+        str, typer.Option(help="ergal, aluminium_6061_t6, steel_s235, titanium_ti6al4v, or E_GPa,nu,yield_MPa[,kg/m3].")
+    ] = "ergal",
+    edge_length: Annotated[
+        float | None, typer.Option(metavar="MM", help="Of the elements; default: from the wall thickness.")
+    ] = None,
+    vtu: Annotated[Path | None, typer.Option(help="Where to write displacement and stress, for ParaView.")] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Safety factor of any closed surface; exit code 1 if the material yields.
+
+    SEL is near:x,y,z (the smooth face nearest to a point), box:x0,y0,z0,x1,y1,z1 (all faces inside) or
+    normal:nx,ny,nz[:degrees] (faces that look there), in the file's units.
+    """
+    from codesign.stress_command import find_material, stress_document
+
+    document = stress_document(part, scale, find_material(material), fix, load, edge_length, vtu)
+    if as_json:
+        print_json(document)
+    else:
+        table = Table(show_header=False, box=None, pad_edge=False)
+        table.add_row("safety factor", f"{document['safety_factor']:.3g} ({document['material']})")
+        table.add_row(
+            "peak stress", f"{document['peak_stress'] / 1e6:.4g} ± {document['stress_error'] / 1e6:.2g} MPa at "
+            + ", ".join(f"{1e3 * x:.2f}" for x in document["peak_position"]) + " mm",
+        )  # fmt: skip
+        table.add_row("stress exceeded in 50 mm³", f"{document['stress_50'] / 1e6:.4g} MPa")
+        table.add_row("largest displacement", f"{document['max_displacement'] * 1e3:.4g} mm")
+        table.add_row("elements", f"{document['tetrahedra']}, edge length {document['edge_length'] * 1e3:.3g} mm")
+        table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
+        out.print(table)
+    return 0 if document["safety_factor"] >= 1.0 else 1
+
+
 @app.command(epilog="Example: `codesign doctor`")
 def doctor(as_json: JsonOption = False) -> int:
     """Versions, BLAS in use, cores, and what is missing."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import meshio
 import numpy as np
 
-from codesign import _core
+from codesign import fem
 from codesign.design import Design
 from codesign.files import write_text
 from codesign.geometry.component import Component
@@ -42,7 +42,8 @@ def export_design(study: Study, theta: Mapping[str, float], out: str | Path) -> 
         drawn.append(_write_robot(study, design, components, out / "robot"))
         evaluation, analyses, _ = chain.result()
     files = [write_text(out / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1)), *drawn]
-    return files + [write_vtu(analysis, out / "stress" / f"{name}.vtu") for name, analysis in analyses.items()]
+    fields = [write_vtu(a.mesh, a.result, out / "stress" / f"{name}.vtu") for name, a in analyses.items()]
+    return files + fields
 
 
 def placed_components(study: Study, design: Design, parts: Mapping[str, Part]) -> list[tuple[Component, str]]:
@@ -70,13 +71,12 @@ def _write_robot(study: Study, design: Design, components: list[tuple[Component,
     return write_urdf_package(robot, folder, writers)
 
 
-def write_vtu(analysis: _core.PartAnalysis, path: Path) -> Path:
+def write_vtu(mesh: fem.TetMesh, result: fem.StaticResult, path: Path) -> Path:
     """Displacement [m], stress [Pa; xx yy zz xy yz zx] and von Mises stress [Pa] at the nodes, for ParaView."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    result = analysis.result
-    mesh = meshio.Mesh(
-        np.array(analysis.mesh.nodes),
-        [("tetra10", np.array(analysis.mesh.tets))],
+    field = meshio.Mesh(
+        np.array(mesh.nodes),
+        [("tetra10", np.array(mesh.tets))],
         point_data={
             "displacement": np.array(result.displacement),
             "stress": np.array(result.stress),
@@ -85,7 +85,7 @@ def write_vtu(analysis: _core.PartAnalysis, path: Path) -> Path:
     )
     temporary = path.with_name(f".{path.name}.tmp.vtu")
     try:
-        meshio.write(temporary, mesh, file_format="vtu")
+        meshio.write(temporary, field, file_format="vtu")
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)

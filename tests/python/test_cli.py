@@ -6,7 +6,9 @@ import sys
 
 import pytest
 
-COMMANDS = ("evaluate", "fly", "optimize", "resume", "runs", "report", "validate", "view", "export", "new", "doctor")
+COMMANDS = (
+    "evaluate", "fly", "optimize", "resume", "runs", "report", "validate", "view", "export", "stress", "new", "doctor",
+)  # fmt: skip
 ORIGINAL = ("--set", "angle=15", "--set", "distance=42", "--set", "offset=80", "--set", "length=108")
 
 

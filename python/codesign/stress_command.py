@@ -1,0 +1,172 @@
+"""`codesign stress`: the safety factor of any closed surface."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from codesign import fem
+from codesign.errors import CodesignError
+from codesign.units import GIGA, MEGA, MILLIMETRE
+
+ELEMENTS_WANTED = 30_000  # of the default edge length, at most
+WALLS = 2.5  # elements across the mean wall, of the default edge length
+
+# Typical catalogue values; ergal (aluminium 7075-T6) as in the shipped study.
+MATERIALS = {
+    "ergal": fem.Material("ergal", 71.7 * GIGA, 0.3, 2810.0, 462.0 * MEGA),
+    "aluminium_6061_t6": fem.Material("aluminium_6061_t6", 68.9 * GIGA, 0.33, 2700.0, 276.0 * MEGA),
+    "steel_s235": fem.Material("steel_s235", 210.0 * GIGA, 0.3, 7850.0, 235.0 * MEGA),
+    "titanium_ti6al4v": fem.Material("titanium_ti6al4v", 113.8 * GIGA, 0.342, 4430.0, 880.0 * MEGA),
+}
+
+
+class StressInputError(CodesignError, ValueError):
+    """An option of `codesign stress` that cannot be used; the message names it and says why."""
+
+
+def parse_selection(text: str, scale: float) -> fem.Selection:
+    """`near:x,y,z`, `box:x0,y0,z0,x1,y1,z1` or `normal:nx,ny,nz[:degrees]`; coordinates in units of `scale` metres.
+
+    Raises: StressInputError.
+    """
+    kind, _, rest = text.strip().partition(":")
+    if kind == "near":
+        return fem.faces_near(np.array(_numbers(rest, 3, text)) * scale)
+    if kind == "box":
+        corners = np.array(_numbers(rest, 6, text)).reshape(2, 3) * scale
+        return fem.faces_in_box(corners.min(axis=0), corners.max(axis=0))
+    if kind == "normal":
+        direction, _, angle = rest.partition(":")
+        normal = np.array(_numbers(direction, 3, text))
+        if not normal.any():
+            raise StressInputError(f"selection {text!r}: the direction is zero")
+        return fem.faces_with_normal(normal, _numbers(angle, 1, text)[0] if angle else 1.0)
+    raise StressInputError(
+        f"selection {text!r}: expected near:x,y,z, box:x0,y0,z0,x1,y1,z1 or normal:nx,ny,nz[:degrees]"
+    )
+
+
+def parse_load(text: str, scale: float) -> fem.Force:
+    """`SEL: fx fy fz`, the total force in newton, spread over the selection's area.
+
+    Raises: StressInputError.
+    """
+    where, colon, force = text.rpartition(":")
+    if not colon:
+        raise StressInputError(f"load {text!r}: expected 'SELECTION: fx fy fz'")
+    values = _numbers(",".join(force.replace(",", " ").split()), 3, text)
+    if not any(values):
+        raise StressInputError(f"load {text!r}: the force is zero")
+    return fem.Force(parse_selection(where, scale), values)
+
+
+def find_material(text: str) -> fem.Material:
+    """A name of MATERIALS, or `E_GPa,nu,yield_MPa[,kg/m3]`.
+
+    Raises: StressInputError.
+    """
+    if text in MATERIALS:
+        return MATERIALS[text]
+    if "," not in text:
+        raise StressInputError(
+            f"material {text!r}: there are {', '.join(MATERIALS)}; or give E_GPa,nu,yield_MPa[,density_kg_m3]"
+        )
+    modulus, ratio, strength, density = (*_numbers(text, 4 if text.count(",") == 3 else 3, text), 0.0)[:4]
+    if strength <= 0.0:
+        raise StressInputError(f"material {text!r}: the yield strength must be positive")
+    try:
+        return fem.Material("custom", modulus * GIGA, ratio, density, strength * MEGA)
+    except ValueError as error:
+        raise StressInputError(f"material {text!r}: {error}") from None
+
+
+def default_edge_length(surface: fem.SurfaceMesh) -> float:
+    """Edge length [m] from the mean wall thickness, 2 · volume / area, limited by the number of elements."""
+    volume = fem.mass_properties(surface, 1.0).volume
+    a, b, c = (surface.points[surface.triangles[:, k]] for k in range(3))
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return max(2.0 * volume / area / WALLS, math.cbrt(8.0 * volume / ELEMENTS_WANTED))
+
+
+def stress_document(
+    path: Path,
+    scale: float,
+    material: fem.Material,
+    fix: Sequence[str],
+    load: Sequence[str],
+    edge_length_mm: float | None = None,
+    vtu: Path | None = None,
+) -> dict[str, Any]:
+    """Meshes, solves and gives the JSON document of `codesign stress`; SI units.
+
+    Args:
+        path: STL file. scale: metres per unit of the file, also of the selections' coordinates.
+        fix: selections held in all directions. load: texts `SEL: fx fy fz`.
+        edge_length_mm: of the elements; from the wall thickness if absent. vtu: where to write the stress field.
+
+    Raises: MeshError, SolverError, StressInputError.
+    """
+    if not fix or not load:
+        raise StressInputError("--fix and --load: at least one of each is needed")
+    if edge_length_mm is not None and not (math.isfinite(edge_length_mm) and edge_length_mm > 0.0):
+        raise StressInputError("--edge-length: a positive number of millimetres is needed")
+    if not (math.isfinite(scale) and scale > 0.0):
+        raise StressInputError("--scale: a positive number of metres per unit is needed")
+    supports = [fem.Support(parse_selection(text, scale)) for text in fix]
+    loads = [parse_load(text, scale) for text in load]
+    start = time.perf_counter()
+    surface = fem.load_surface(path, scale)
+    size = default_edge_length(surface) if edge_length_mm is None else edge_length_mm * MILLIMETRE
+    mesh = fem.tetrahedralize(surface, size)
+    meshed = time.perf_counter()
+    try:
+        result = fem.solve_static(mesh, material, supports, loads)
+    except ValueError as error:
+        raise StressInputError(str(error)) from None
+    solved = time.perf_counter()
+    if vtu is not None:
+        from codesign.design_files import write_vtu
+
+        write_vtu(mesh, result, vtu)
+    quality, report = mesh.quality, mesh.report
+    return {
+        "file": str(path),
+        "material": material.name,
+        "safety_factor": result.safety_factor,
+        "peak_stress": result.peak_stress,
+        "peak_position": [float(x) for x in result.peak_position],
+        "stress_50": result.stress_50,
+        "stress_error": result.stress_error,
+        "max_displacement": result.max_displacement,
+        "work": result.work,
+        "applied_force": [float(x) for x in np.array([force.force for force in loads]).sum(axis=0)],
+        "reaction_force": [float(x) for x in np.asarray(result.reactions).sum(axis=0)],
+        "mass": quality.volume * material.density if material.density > 0.0 else None,
+        "volume": quality.volume,
+        "edge_length": size,
+        "nodes": len(mesh.nodes),
+        "tetrahedra": len(mesh.tets),
+        "mesh": {
+            "min_dihedral_deg": quality.min_dihedral_deg,
+            "collapsed_edges": report.collapsed,
+            "collapse_distance": report.collapse_distance,
+            "peeled": report.peeled,
+        },
+        "seconds": {"mesh": meshed - start, "solve": solved - meshed},
+    }
+
+
+def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != count or not all(math.isfinite(value) for value in values):
+        raise StressInputError(f"{whole!r}: expected {count} numbers, found {text.strip()!r}")
+    return values
