@@ -16,19 +16,16 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from codesign import _core
 from codesign import dynamics as dyn
-from codesign.analysis import part_case
 from codesign.cache import MemoryCache
 from codesign.evaluation import Evaluation
 from codesign.flight_setup import flight_settings, joint_names
 from codesign.optimization import optimize
-from codesign.pipeline import objective_families, stress_settings
+from codesign.pipeline import objective_families
 from codesign.progress import ProgressBar
 from codesign.report.data import ReportData
 from codesign.report.details import load_details
@@ -95,15 +92,6 @@ def as_published(study: Study, urdf: Path, trajectory: str) -> dyn.FlightLog:
     config = study.config
     model = dyn.load_urdf(urdf, joints=joint_names(config.flight), as_published=True)
     return dyn.simulate_flight(model, flight_settings(config.flight, config.trajectories[trajectory]))
-
-
-def confirmed(study: Study, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Any]:
-    """Stress results by part with the full geometry and the fine mesh."""
-    results = {}
-    for name, part in study.build_parts(theta).items():
-        settings = replace(stress_settings(study.config, name), geometry="full", accuracy="fine")
-        results[name] = _core.analyse_part(part_case(part, settings)).result
-    return results
 
 
 def evaluate_rows(study: Study, rows: Sequence[Row], workers: int) -> dict[tuple[int, ...], Evaluation]:
@@ -205,9 +193,10 @@ def designs_section(study: Study, data: ReportData, evaluations: Mapping[tuple[i
     chosen |= {role: e for role, e in data.highlights.items() if role != "original"}
     rows = []
     for role, e in chosen.items():
-        fine = confirmed(study, e.design)
+        fine = study.confirm(e.design)
         factors = [
-            f"{e.parts[name]['safety_factor']:.1f} ({fine[name].safety_factor:.1f})" for name in study_parts(study)
+            f"{e.parts[name]['safety_factor']:.1f} ({fine[name].confirmed['safety_factor']:.1f})"
+            for name in study_parts(study)
         ]
         numbers = [f"{e.objectives[k]:.4g}" if e.objectives else "–" for k in data.keys]
         masses = 2 * sum(e.parts[name]["mass"] for name in study_parts(study))
