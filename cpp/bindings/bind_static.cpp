@@ -60,7 +60,10 @@ void bind_supports_and_loads(py::module_& m) {
   py::class_<Support>(m, "Support")
       .def(py::init<Selection, std::array<bool, 3>, Points, bool>(), "where"_a,
            "fixed"_a = std::array<bool, 3>{true, true, true}, "displacement"_a = Points(0, 3),
-           "symmetry"_a = false);
+           "symmetry"_a = false)
+      .def_readonly("where", &Support::where)
+      .def_readonly("fixed", &Support::fixed)
+      .def_readonly("symmetry", &Support::symmetry);
   py::class_<Force>(m, "Force").def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "force"_a);
   py::class_<Traction>(m, "Traction")
       .def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "traction"_a);
@@ -70,7 +73,9 @@ void bind_supports_and_loads(py::module_& m) {
   py::class_<AffineTraction>(m, "AffineTraction")
       .def(py::init<Selection, Eigen::Vector3d, Eigen::Vector3d, Eigen::Vector3d,
                     std::optional<Disc>>(),
-           "where"_a, "force"_a, "point"_a, "moment"_a, "region"_a = std::nullopt);
+           "where"_a, "force"_a, "point"_a, "moment"_a, "region"_a = std::nullopt)
+      .def_readonly("where", &AffineTraction::where)
+      .def_readonly("region", &AffineTraction::region);
   py::class_<Acceleration>(m, "Acceleration").def(py::init<Eigen::Vector3d>(), "acceleration"_a);
   py::class_<BodyForce>(m, "BodyForce").def(py::init<Points>(), "force"_a);
   m.def("load_vector", &load_vector, "mesh"_a, "material"_a, "loads"_a,

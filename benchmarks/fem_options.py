@@ -1,0 +1,92 @@
+"""Effect of the study's options on the safety factor, and simplified against full parts; tables of docs/fem.md.
+
+python benchmarks/fem_options.py
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import codesign
+from codesign import _core
+from codesign.analysis import StressSettings, confirm, part_case, part_document
+from codesign.geometry.part import Part
+from codesign.pipeline import stress_settings
+
+DESIGNS = (
+    {"angle": 15, "distance": 42, "offset": 80, "length": 108},
+    {"angle": 60, "distance": 60, "offset": 100, "length": 150},
+)
+OPTIONS: dict[str, dict[str, Any]] = {
+    "as published": {},
+    "thrust_line": {"load": "thrust_line"},
+    "bolted": {"support": "bolted"},
+    "both": {"load": "thrust_line", "support": "bolted"},
+}
+MEGA, MILLI = 1e6, 1e-3
+
+
+def analyse(part: Part, settings: StressSettings) -> tuple[_core.PartAnalysis, float]:
+    """Result and CPU seconds."""
+    start = time.process_time()
+    analysis = _core.analyse_part(part_case(part, settings))
+    return analysis, time.process_time() - start
+
+
+def options(part: Part, settings: StressSettings) -> None:
+    """One row an option; the forearm support has no other support."""
+    for name, change in OPTIONS.items():
+        if part.name == "forearm_support" and "support" in change:
+            continue
+        result = analyse(part, replace(settings, **change))[0].result
+        print(
+            f"| {part.title} | {name} | {result.safety_factor:.1f} | {result.peak_stress / MEGA:.2f} "
+            f"| {result.stress_50 / MEGA:.2f} | {result.max_displacement / MILLI:.4f} |",
+            flush=True,
+        )
+
+
+def print_geometry(part: Part, name: str, document: Mapping[str, Any], mass: float, seconds: float) -> None:
+    """One row of the second table."""
+    print(
+        f"| {part.title} | {name} | {mass:.4f} | {document['peak_stress'] / MEGA:.2f} ± "
+        f"{document['stress_error'] / MEGA:.2f} | {document['stress_50'] / MEGA:.2f} "
+        f"| {document['max_displacement'] / MILLI:.4f} | {document['tetrahedra']} | {seconds:.1f} |",
+        flush=True,
+    )
+
+
+def geometries(part: Part, settings: StressSettings) -> None:
+    """Simplified and full part on the mesh of the optimisation, and the full part as confirmed."""
+    mass = part.mass_properties()
+    for geometry in ("simplified", "full"):
+        analysis, seconds = analyse(part, replace(settings, geometry=geometry))
+        copies = 2 if part.name == "jetpack_bracket" else 1
+        meshed = copies * analysis.mesh.quality.volume * part.density
+        print_geometry(part, geometry, part_document(mass, analysis), meshed, seconds)
+    start = time.process_time()
+    confirmed = confirm(part, settings).confirmed
+    seconds = time.process_time() - start
+    print_geometry(part, f"full, fine, refined {confirmed['refinements']} ×", confirmed, mass.mass, seconds)
+
+
+def main() -> None:
+    study = codesign.load_study("ironcub")
+    parts = [
+        (part, stress_settings(study.config, name)) for d in DESIGNS for name, part in study.build_parts(d).items()
+    ]
+    print("| part | option | safety factor | peak, MPa | σ_50, MPa | largest u, mm |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for part, settings in parts:
+        options(part, settings)
+    print("\n| part | geometry | mass, kg | peak, MPa | σ_50, MPa | largest u, mm | tetrahedra | CPU s |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for part, settings in parts:
+        geometries(part, settings)
+
+
+if __name__ == "__main__":
+    main()
