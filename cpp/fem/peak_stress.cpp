@@ -96,7 +96,7 @@ PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExc
 
 double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
                          const RecoveryError& recovery, const PeakStress& peak) {
-  constexpr double kShare = 0.4, kFloor = 0.025, kSlope = 0.5, kCoarse = 23.0;
+  constexpr double kShare = 0.4, kFloor = 0.03, kSlope = 0.5, kCoarse = 23.0;
   if (!(peak.value > 0)) return 0.0;
   double largest = 0.0;
   for (int e = 0; e < mesh.tets.rows(); ++e) {

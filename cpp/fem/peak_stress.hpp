@@ -32,7 +32,7 @@ PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExc
 // Estimated error (Pa) of the peak stress, from an indicator x: the spread of the recovery there
 // plus 0.4 times the largest root mean square difference between finite-element and recovered
 // stress over the elements around the face, relative to the peak. Calibrated on the study's parts
-// (docs/fem.md): sqrt(2.5 %² + (x / 2)²) + 23 x³. The first term is the noise of a largest of many
+// (docs/fem.md): sqrt(3 %² + (x / 2)²) + 23 x³. The first term is the noise of a largest of many
 // values, the last one counts where elements are too coarse for x to be proportional to the error.
 // An estimate, not a bound.
 double peak_stress_error(const TetMesh& mesh, const PointStresses& points,

@@ -6,10 +6,15 @@ import numpy as np
 import pytest
 
 from codesign import _core, fem
-from codesign.analysis import PressedFace, StressSettings, confirm, part_case
+from codesign.analysis import PressedFace, StressSettings, confirm, default_case, part_case
 from codesign.geometry.part import Part, parameter
-from codesign.geometry.profile import Path, circle
+from codesign.geometry.profile import Path, Resolution, circle
 from codesign.geometry.shape import Extrusion, Shape
+from codesign.geometry.solid import build_solid
+from codesign.geometry.surface import surface_mesh
+from codesign.pipeline import stress_settings
+from codesign.studies.ironcub.bracket import JetpackBracket
+from codesign.study import load_study, new_study
 
 LENGTH, HALF_WIDTH, RADIUS, THICKNESS = 24.0, 10.0, 2.0, 4.0  # mm
 
@@ -29,6 +34,11 @@ class HoledStrip(Part):
             .line(0.0, HALF_WIDTH).line(0.0, -HALF_WIDTH, face="mount").close()
         )  # fmt: skip
         return Extrusion(outline.without(circle(0.5 * self.length, 0.0, RADIUS)), 0.0, THICKNESS)
+
+    def stress_case(self, settings: StressSettings) -> _core.PartCase:
+        case = default_case(self, settings)
+        case.size = fem.SizeField(2e-3 if settings.accuracy == "optimisation" else 1.6e-3)
+        return case
 
 
 SETTINGS = StressSettings(
@@ -74,3 +84,26 @@ def test_confirmation_stands_beside_the_analysis(part):
     assert result.confirmed["nodes"] > result.analysed["nodes"]
     assert result.confirmed["tolerance_reached"]
     assert abs(result.deviation) < 0.15
+
+
+def test_a_half_part_has_the_frequencies_of_the_whole():
+    bracket = JetpackBracket(15, 42)
+    settings = replace(stress_settings(load_study("ironcub").config, bracket.name), modes=4)
+    case = part_case(bracket, settings)
+    case.size = fem.SizeField(6e-3)
+    halves = _core.analyse_part(case).frequencies
+    mesh = fem.tetrahedralize(surface_mesh(build_solid(bracket.fem_shape(half=False), Resolution(48)).tidied()), 6e-3)
+    whole = fem.natural_frequencies(mesh, settings.material, [fem.Support("mount")], count=4).frequency
+    assert halves == pytest.approx(whole, rel=0.02)  # a coarse mesh
+
+
+def test_a_study_may_limit_the_first_frequency(tmp_path):
+    new_study(tmp_path / "study")
+    file = tmp_path / "study" / "study.toml"
+    file.write_text(file.read_text().replace("[constraints]", "[constraints]\nfirst_frequency_min_hz = 1e5"))
+    result = load_study(file).evaluate({"reach": 200, "height": 30})
+    assert result.status == "infeasible"
+    assert "natural frequency" in (result.reason or "")
+    assert 10.0 < result.constraints["first_frequency"] < 1e5
+    assert result.violations["first_frequency"] == pytest.approx(1 - result.constraints["first_frequency"] / 1e5)
+    assert len(result.parts["strut"]["frequencies"]) == 3
