@@ -372,6 +372,7 @@ def stress(
         float | None, typer.Option(metavar="MM", help="Of the elements; default: from the wall thickness.")
     ] = None,
     vtu: Annotated[Path | None, typer.Option(help="Where to write displacement and stress, for ParaView.")] = None,
+    png: Annotated[Path | None, typer.Option(help="Where to write a picture of the stressed part.")] = None,
     as_json: JsonOption = False,
 ) -> int:
     """Safety factor of any closed surface; exit code 1 if the material yields.
@@ -381,7 +382,7 @@ def stress(
     """
     from codesign.stress_command import find_material, stress_document
 
-    document = stress_document(part, scale, find_material(material), fix, load, edge_length, vtu)
+    document = stress_document(part, scale, find_material(material), fix, load, edge_length, vtu, png)
     if as_json:
         print_json(document)
     else:

@@ -72,7 +72,11 @@ def _write_robot(study: Study, design: Design, components: list[tuple[Component,
 
 
 def write_vtu(mesh: fem.TetMesh, result: fem.StaticResult, path: Path) -> Path:
-    """Displacement [m], stress [Pa; xx yy zz xy yz zx] and von Mises stress [Pa] at the nodes, for ParaView."""
+    """Writes the fields of an analysis for ParaView.
+
+    At the nodes displacement [m], stress [Pa; xx yy zz xy yz zx] and von Mises stress [Pa]; of each element `error`,
+    how far its own stress is from the recovered one [Pa].
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     field = meshio.Mesh(
         np.array(mesh.nodes),
@@ -82,6 +86,7 @@ def write_vtu(mesh: fem.TetMesh, result: fem.StaticResult, path: Path) -> Path:
             "stress": np.array(result.stress),
             "von_mises": np.array(result.von_mises),
         },
+        cell_data={"error": [np.array(result.element_error)]},
     )
     temporary = path.with_name(f".{path.name}.tmp.vtu")
     try:

@@ -102,13 +102,14 @@ def stress_document(
     load: Sequence[str],
     edge_length_mm: float | None = None,
     vtu: Path | None = None,
+    png: Path | None = None,
 ) -> dict[str, Any]:
     """Meshes, solves and gives the JSON document of `codesign stress`; SI units.
 
     Args:
         path: STL file. scale: metres per unit of the file, also of the selections' coordinates.
         fix: selections held in all directions. load: texts `SEL: fx fy fz`.
-        edge_length_mm: of the elements; from the wall thickness if absent. vtu: where to write the stress field.
+        edge_length_mm: of the elements; from the wall thickness if absent. vtu, png: the stress field, a picture of it.
 
     Raises: MeshError, SolverError, StressInputError.
     """
@@ -134,6 +135,12 @@ def stress_document(
         from codesign.design_files import write_vtu
 
         write_vtu(mesh, result, vtu)
+    if png is not None:
+        from codesign.report.compute import stress_field
+        from codesign.report.figures.solids import write_stress_picture
+
+        title = f"{path.stem}: safety factor {result.safety_factor:.3g}"
+        write_stress_picture(stress_field(mesh, result), title, png)
     quality, report = mesh.quality, mesh.report
     return {
         "file": str(path),

@@ -86,6 +86,15 @@ def test_selections_that_make_no_sense_are_refused(bar, fix, load, message):
         stress_document(bar, 1e-3, MATERIALS["ergal"], fix, load, 5.0)
 
 
+def test_fields_and_picture_are_written(bar, tmp_path):
+    vtu, png = tmp_path / "bar.vtu", tmp_path / "bar.png"
+    stress_document(bar, 1e-3, MATERIALS["ergal"], ["normal:-1,0,0"], [PULL], 5.0, vtu, png)
+    field = meshio.read(vtu)
+    assert {"displacement", "stress", "von_mises"} == set(field.point_data)
+    assert len(field.cell_data["error"][0]) == len(field.cells[0].data)
+    assert png.read_bytes().startswith(b"\x89PNG")
+
+
 def test_loads_accept_commas_and_spaces():
     assert tuple(parse_load("near:1,2,3: 1, 2 -3", 1e-3).force) == (1.0, 2.0, -3.0)
 

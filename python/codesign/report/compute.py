@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from codesign import _core
+from codesign import fem
 from codesign.evaluation import Evaluation
 from codesign.flight_setup import joint_names
 from codesign.pipeline import evaluate_with_fields
@@ -22,7 +22,7 @@ def compute_detail(study: Any, evaluation: Evaluation) -> Detail:
     config = study.configured(design)
     trajectory = evaluation.flight.get("trajectory") or config.flight.trajectory
     _, analyses, flight = evaluate_with_fields(study, design, trajectory)
-    fields = {name: stress_field(analysis) for name, analysis in analyses.items()}
+    fields = {name: stress_field(analysis.mesh, analysis.result) for name, analysis in analyses.items()}
     return Detail(evaluation, fields, history(config.flight, trajectory, flight))
 
 
@@ -32,16 +32,16 @@ def history(flight: Any, trajectory: str, log: Any) -> FlightHistory:
     return flight_history(log, trajectory, tuple(flight.jets.frames), tuple(joint_names(flight)), groups)
 
 
-def stress_field(analysis: _core.PartAnalysis) -> StressField:
+def stress_field(mesh: fem.TetMesh, result: fem.StaticResult) -> StressField:
     """Von Mises stress on the boundary of a part's mesh; each quadratic triangle becomes four flat ones."""
-    boundary = np.asarray(analysis.mesh.boundary)
+    boundary = np.asarray(mesh.boundary)
     corners, middles = boundary[:, :3], boundary[:, 3:]
     (a, b, c), (ab, bc, ca) = corners.T, middles.T
     triangles = np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
     used, index = np.unique(triangles, return_inverse=True)
     return StressField(
-        points=np.asarray(analysis.mesh.nodes)[used],
+        points=np.asarray(mesh.nodes)[used],
         triangles=index.reshape(triangles.shape).astype(np.int64),
-        von_mises=np.asarray(analysis.result.von_mises)[used],
-        peak=float(analysis.result.peak_stress),
+        von_mises=np.asarray(result.von_mises)[used],
+        peak=float(result.peak_stress),
     )

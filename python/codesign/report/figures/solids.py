@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,8 +33,6 @@ def stress(data: FigureData) -> Any:
 
     The scale ends at the peak that decides the safety factor; beyond it lie clamped edges, where stress has no limit.
     """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
     shown = {name: (e, d) for name, e in data.compared.items() if (d := data.detail(e)) is not None and d.parts}
@@ -50,16 +49,32 @@ def stress(data: FigureData) -> Any:
             numbers = evaluation.parts.get(part, {})
             factor = f": safety factor {numbers['safety_factor']:.1f}" if numbers.get("safety_factor") else ""
             axes.set_title(f"{words(part)}, {name}{factor}", pad=2)
-        bar = figure.colorbar(
-            ScalarMappable(Normalize(0.0, highest / 1e6), style.stress_colours()),
-            ax=grid[:, column],
-            aspect=40,
-            pad=0.02,
-            extend="max",
-        )
-        bar.set_label("von Mises stress (MPa)")
-        bar.outline.set_visible(False)
+        _stress_bar(figure, grid[:, column], highest)
     return figure
+
+
+def write_stress_picture(part: StressField, title: str, path: Path) -> Path:
+    """PNG of one part coloured by von Mises stress; the scale ends at the peak that decides the safety factor."""
+    from matplotlib.figure import Figure
+
+    with style.style():
+        figure = Figure(figsize=(style.COLUMN * 1.4, style.COLUMN))
+        axes = figure.subplots()
+        _picture(axes, _stress_picture(part, part.peak))
+        axes.set_title(title)
+        _stress_bar(figure, axes, part.peak)
+        figure.savefig(path, format="png", metadata={"Software": None})
+    return path
+
+
+def _stress_bar(figure: Any, axes: Any, highest: float) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    scale = ScalarMappable(Normalize(0.0, highest / 1e6), style.stress_colours())
+    bar = figure.colorbar(scale, ax=axes, aspect=40, pad=0.02, extend="max")
+    bar.set_label("von Mises stress (MPa)")
+    bar.outline.set_visible(False)
 
 
 def _stress_picture(part: StressField, highest: float) -> NDArray[np.uint8]:
