@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 // Dense kernels for the small symmetric matrices of one control step (orders 6 to 30), on raw
-// column-major storage: column j starts at a + j·stride, only the lower triangle is read and
-// written. Plain loops over contiguous columns, which the compiler vectorises without reordering a
-// sum; at these sizes they beat a general library call.
+// column-major storage: column j starts at a + j·stride; of symmetric matrices only the lower
+// triangle is read and written. Plain loops over contiguous columns, which the compiler vectorises
+// without reordering a sum; at these sizes they beat a general library call.
 namespace codesign::dynamics {
 
 // Lower triangle of C += factor A Aᵀ; C is n×n, A is n×m.
@@ -83,6 +84,44 @@ inline void cholesky_solve(const double* a, int m, int stride, double* b) {
     }
     if (i < m) even += column[i] * b[i];
     b[j] = (b[j] - (even + odd)) * column[j];
+  }
+}
+
+// Overwrites the full m×m matrix with the factors of P A = L U, L with unit diagonal; row j was
+// exchanged with row pivots[j]. False, with the content lost, if a pivot is zero or not a number.
+inline bool lu_in_place(double* a, int m, int stride, int* pivots) {
+  for (int j = 0; j < m; ++j) {
+    double* column = a + j * stride;
+    int pivot = j;
+    for (int i = j + 1; i < m; ++i) {
+      if (std::abs(column[i]) > std::abs(column[pivot])) pivot = i;
+    }
+    pivots[j] = pivot;
+    if (!(std::abs(column[pivot]) > 0.0)) return false;
+    if (pivot != j) {
+      for (int k = 0; k < m; ++k) std::swap(a[k * stride + j], a[k * stride + pivot]);
+    }
+    for (int i = j + 1; i < m; ++i) column[i] /= column[j];
+    for (int k = j + 1; k < m; ++k) {
+      double* other = a + k * stride;
+      const double x = other[j];
+      for (int i = j + 1; i < m; ++i) other[i] -= x * column[i];
+    }
+  }
+  return true;
+}
+
+// Overwrites b with the solution of A x = b, factors from lu_in_place.
+inline void lu_solve(const double* a, int m, int stride, const int* pivots, double* b) {
+  for (int j = 0; j < m; ++j) std::swap(b[j], b[pivots[j]]);
+  for (int j = 0; j < m; ++j) {
+    const double* column = a + j * stride;
+    for (int i = j + 1; i < m; ++i) b[i] -= b[j] * column[i];
+  }
+  for (int j = m - 1; j >= 0; --j) {
+    const double* column = a + j * stride;
+    b[j] /= column[j];
+    for (int i = 0; i < j; ++i) b[i] -= b[j] * column[i];
   }
 }
 

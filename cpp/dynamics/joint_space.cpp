@@ -10,8 +10,8 @@ JointSpace::JointSpace(int joints)
       half_(Eigen::MatrixXd::Zero(joints, kBaseDofs)),
       joint_inertia_(Eigen::MatrixXd::Zero(joints, joints)),
       factor_(Eigen::MatrixXd::Zero(joints, joints)),
-      joint_acceleration_(Eigen::VectorXd::Zero(joints)),
-      pivoted_(joints) {}
+      pivots_(Eigen::VectorXi::Zero(joints)),
+      joint_acceleration_(Eigen::VectorXd::Zero(joints)) {}
 
 bool JointSpace::set_mass_matrix(const Eigen::Ref<const Eigen::MatrixXd>& M) {
   const Eigen::Index n = joint_inertia_.rows();
@@ -28,8 +28,8 @@ bool JointSpace::set_mass_matrix(const Eigen::Ref<const Eigen::MatrixXd>& M) {
   definite_ = cholesky_in_place(factor_.data(), size, size);
   if (definite_) return true;
   if (!joint_inertia_.allFinite()) return false;
-  pivoted_.compute(joint_inertia_);
-  return pivoted_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
+  factor_ = joint_inertia_;
+  return lu_in_place(factor_.data(), size, size, pivots_.data());
 }
 
 void JointSpace::reduce_force(const Eigen::Ref<const Eigen::VectorXd>& force,
@@ -44,7 +44,7 @@ void JointSpace::solve_joint_inertia(Eigen::VectorXd& x) const {
   if (definite_) {
     cholesky_solve(factor_.data(), size, size, x.data());
   } else {
-    x = pivoted_.solve(x).eval();
+    lu_solve(factor_.data(), size, size, pivots_.data(), x.data());
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include "dynamics/spatial.hpp"
 
@@ -10,8 +9,8 @@ namespace codesign::dynamics {
 
 // Equations of motion M ν̇ = (0; τ) + f of a floating base with its six base accelerations
 // eliminated:  M̂ s̈ = τ + f̂,  M̂ = M_ss − M_sb M_bb⁻¹ M_bs,  f̂ = f_s − M_sb M_bb⁻¹ f_b.
-// M̂⁻¹ is the joint block of M⁻¹. Nothing allocates but the constructor, unless M̂ is indefinite
-// (robots with unphysical inertias).
+// M̂⁻¹ is the joint block of M⁻¹. Where M̂ is indefinite (robots with unphysical inertias), it is
+// factored with pivoting. Nothing allocates but the constructor.
 class JointSpace {
  public:
   explicit JointSpace(int joints);
@@ -36,10 +35,11 @@ class JointSpace {
   Eigen::LLT<Matrix6d> base_;
   Eigen::Matrix<double, Eigen::Dynamic, 6> coupling_;  // M_sb
   Eigen::Matrix<double, Eigen::Dynamic, 6> half_;      // M_sb L⁻ᵀ, M_bb = L Lᵀ
-  Eigen::MatrixXd joint_inertia_, factor_;
+  Eigen::MatrixXd joint_inertia_;
+  Eigen::MatrixXd factor_;  // of M̂: Cholesky's, or L and U where it is indefinite
+  Eigen::VectorXi pivots_;
   Eigen::VectorXd joint_acceleration_;
   bool definite_ = true;
-  Eigen::PartialPivLU<Eigen::MatrixXd> pivoted_;  // of M̂ where it is indefinite
 };
 
 }  // namespace codesign::dynamics

@@ -29,7 +29,8 @@ inline std::string joint(const std::string& name, const std::string& type,
 
 // side: "l" or "r". Axes of roll and yaw joints are mirrored, so that equal joint angles mean
 // mirrored arms.
-inline std::string arm(const std::string& side, const std::string& last_type) {
+inline std::string arm(const std::string& side, const std::string& last_type,
+                       const std::string& fore_iyy) {
   const bool left = side == "l";
   const std::string y = left ? "" : "-";
   const std::string products =
@@ -40,7 +41,7 @@ inline std::string arm(const std::string& side, const std::string& last_type) {
          link(side + "_upper", 2.0, "0.01 " + y + "0.02 -0.1",
               "ixx=\"0.02\" iyy=\"0.02\" izz=\"0.004\" ixz=\"0.001\" " + products) +
          link(side + "_fore", 2.5, "0 " + y + "0.01 -0.1",
-              "ixx=\"0.02\" iyy=\"0.02\" izz=\"0.005\" ixz=\"0\" " + products) +
+              "ixx=\"0.02\" izz=\"0.005\" ixz=\"0\" iyy=\"" + fore_iyy + "\" " + products) +
          link(side + "_jet", 2.0, "0 0 0.05",
               "ixx=\"0.008\" iyy=\"0.008\" izz=\"0.003\" ixy=\"0\" ixz=\"0\" iyz=\"0\"") +
          joint(side + "_pitch", "revolute", "trunk", side + "_shoulder", "0.1 " + y + "0.15 0.2",
@@ -53,13 +54,14 @@ inline std::string arm(const std::string& side, const std::string& last_type) {
                "0 0 1", "3.141592653589793 0 0");
 }
 
-inline std::string urdf(const std::string& last_type = "revolute") {
+inline std::string urdf(const std::string& last_type = "revolute",
+                        const std::string& fore_iyy = "0.02") {
   std::string text = "<robot name=\"flyer\">" +
                      link("trunk", 22.0, "-0.035 0 0.05",
                           "ixx=\"0.9\" iyy=\"0.8\" izz=\"0.35\" ixy=\"0\" ixz=\"0.01\" iyz=\"0\"");
   for (const std::string side : {"l", "r"}) {
     const std::string y = side == "l" ? "" : "-";
-    text += arm(side, last_type);
+    text += arm(side, last_type, fore_iyy);
     text += link(side + "_back", 2.0, "0 0 0",
                  "ixx=\"0.008\" iyy=\"0.008\" izz=\"0.003\" ixy=\"0\" ixz=\"0\" iyz=\"0\"");
     text += joint(side + "_back_mount", "fixed", "trunk", side + "_back", "-0.12 " + y + "0.1 0.1",
@@ -95,6 +97,14 @@ inline Model model(const std::string& last_type = "revolute") {
   UrdfOptions options;
   options.joints = settings().joints;
   return load_urdf(urdf(last_type), options);
+}
+
+// The same with forearms no body can have: their elbows' entries of the mass matrix are negative.
+inline Model unphysical_model() {
+  UrdfOptions options;
+  options.joints = settings().joints;
+  options.as_published = true;
+  return load_urdf(urdf("revolute", "-0.25"), options);
 }
 
 }  // namespace codesign::dynamics::testing
