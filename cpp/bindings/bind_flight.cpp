@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "bindings/bind_flight_settings.hpp"
 #include "bindings/bindings.hpp"
@@ -173,6 +174,14 @@ void bind_log(py::module_& m) {
       .def_readonly("angular_momentum", &ObjectiveParts::angular_momentum)
       .def_readonly("joint_velocity", &ObjectiveParts::joint_velocity,
                     "one per joint group, without its weight");
+  py::class_<FlightProfile>(m, "FlightProfile", "Wall time of a flight by phase of the step [s].")
+      .def_readonly("plant", &FlightProfile::plant, "integration, jets")
+      .def_readonly("terms", &FlightProfile::terms,
+                    "kinematics, inertias, mass matrix and its factorisation, Jacobians")
+      .def_readonly("task", &FlightProfile::task, "references, building of the momentum QP")
+      .def_readonly("momentum_qp", &FlightProfile::momentum_qp, "solution of the momentum QP")
+      .def_readonly("torque", &FlightProfile::torque, "torque QP and rate limiter")
+      .def_readonly("log", &FlightProfile::log, "checks and histories");
   py::class_<FlightLog> log(m, "FlightLog",
                             "What happened in a flight: histories (read-only arrays that share the "
                             "log's memory), status and summary. SI units, world axes.");
@@ -200,6 +209,7 @@ void bind_log(py::module_& m) {
       .def_readonly("min_clearance", &FlightLog::min_clearance, "[m]")
       .def_readonly("qp_failures", &FlightLog::qp_failures)
       .def_readonly("total_qp_iterations", &FlightLog::total_qp_iterations)
+      .def_readonly("profile", &FlightLog::profile)
       .def_readonly("rms", &FlightLog::rms)
       .def_readonly("script", &FlightLog::script)
       .def_readonly("paper", &FlightLog::paper)
@@ -224,6 +234,20 @@ void bind_flight(py::module_& m) {
       "Fly the model along the settings' trajectory. The model must have been loaded with "
       "joints=settings.joints. A lost flight is a status of the log. Raises ValueError if model "
       "and settings do not fit each other.");
+  m.def(
+      "momentum_qps",
+      [](const PyModel& model, const FlightSettings& settings, const FlightLog& log, int every) {
+        using Qp = std::tuple<Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXd, Eigen::VectorXd>;
+        std::vector<Qp> tuples;
+        for (const MomentumQp& qp : momentum_qps(model, settings, log, every)) {
+          tuples.emplace_back(qp.H, qp.g, qp.lower, qp.upper);
+        }
+        return tuples;
+      },
+      py::arg("model"), py::arg("settings"), py::arg("log"), py::arg("every") = 1,
+      "Momentum QPs (H, g, lower, upper) of samples 0, every, 2 every, ... of a flight, rebuilt "
+      "from its log. Unknowns: thrust rates, then joint velocities. Raises ValueError if the log "
+      "is not of this model and these settings.");
 }
 
 }  // namespace codesign

@@ -1,6 +1,7 @@
 #include "dynamics/flight.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -37,6 +38,20 @@ void require_fit(const Model& model, const FlightSettings& settings) {
 struct WatchedPoint {
   int frame;
   Vector3d position;
+};
+
+// Adds the time since the last call to one phase after the other.
+class Stopwatch {
+ public:
+  void lap(double& phase) {
+    const Clock::time_point now = Clock::now();
+    phase += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
 };
 
 // Everything the loop carries from step to step. The member functions are the items of one step.
@@ -76,6 +91,7 @@ class Flight {
   TorqueController torque_controller_;
   double com_error_ = 0.0, attitude_error_ = 0.0;
   FlightLog log_;
+  Stopwatch watch_;
 };
 
 RobotState initial_state(const FlightSettings& settings) {
@@ -149,7 +165,9 @@ FailureReason Flight::control(int k) {
 
   build_momentum_task(model_, settings_, origin_, state_, terms_, thrust_, reference_, task_);
   build_momentum_qp(settings_, origin_, task_, state_, thrust_, qp_);
+  watch_.lap(log_.profile.task);
   const BoxQpResult& solution = qp_solver_.solve(qp_.H, qp_.g, qp_.lower, qp_.upper);
+  watch_.lap(log_.profile.momentum_qp);
   if (solution.status != QpStatus::kSolved) return FailureReason::kMomentumQp;
   thrust_rate_ = solution.x.head(thrust_.size());
   joint_velocity_ = solution.x.tail(joint_velocity_.size());
@@ -165,6 +183,7 @@ FailureReason Flight::control(int k) {
   }
   inputs_.torque = torque_controller_.torque();
   inputs_.thrust = thrust_;
+  watch_.lap(log_.profile.torque);
   return FailureReason::kNotFailed;
 }
 
@@ -254,19 +273,23 @@ FlightLog Flight::run() {
   log_ = make_flight_log(samples, model_.joint_count(), static_cast<int>(settings_.jets.size()));
   log_.step = settings_.step;
   if (!update_dynamics()) fail(FailureReason::kSingularMass, 0);
+  watch_ = {};
   for (int k = 0; k < samples && log_.status == FlightStatus::kCompleted; ++k) {
     FailureReason reason = FailureReason::kNotFailed;
     if (!advance_plant(k)) reason = FailureReason::kSingularMass;
     advance_jets(k);
+    watch_.lap(log_.profile.plant);
     if (!state_.velocity.allFinite() || !state_.joints.allFinite() || !thrust_.allFinite()) {
       reason = FailureReason::kNotFinite;
     }
     if (reason == FailureReason::kNotFailed && !update_dynamics())
       reason = FailureReason::kSingularMass;
+    watch_.lap(log_.profile.terms);
     if (reason == FailureReason::kNotFailed) reason = control(k);
     if (reason == FailureReason::kNotFailed) {
       reason = check_limits();
       log_sample(k);
+      watch_.lap(log_.profile.log);
     }
     if (reason != FailureReason::kNotFailed) fail(reason, k);
   }
@@ -285,6 +308,15 @@ void summarise(const Model& model, const FlightSettings& settings, FlightLog& lo
   compute_objectives(settings, log);
 }
 
+RobotState logged_state(const FlightLog& log, int k) {
+  RobotState state;
+  state.base.p = log.base_position.row(k).transpose();
+  state.base.R = Eigen::Map<const RowMajorRotation>(log.base_rotation.row(k).data());
+  state.joints = log.joint_positions.row(k).transpose();
+  state.velocity = log.velocity.row(k).transpose();
+  return state;
+}
+
 }  // namespace
 
 FlightLog simulate_flight(const Model& model, const FlightSettings& settings) {
@@ -293,6 +325,36 @@ FlightLog simulate_flight(const Model& model, const FlightSettings& settings) {
   if (log.samples < log.time.rows()) truncate(log);
   summarise(model, settings, log);
   return log;
+}
+
+std::vector<MomentumQp> momentum_qps(const Model& model, const FlightSettings& settings,
+                                     const FlightLog& log, int every) {
+  require_fit(model, settings);
+  if (every < 1) throw std::invalid_argument("momentum_qps: every must be at least 1");
+  if (log.velocity.cols() != model.dofs() || log.step != settings.step) {
+    throw std::invalid_argument("momentum_qps: the log is not of this model and these settings");
+  }
+  std::vector<MomentumQp> qps;
+  if (log.samples == 0) return qps;
+  const int jets = static_cast<int>(settings.jets.size());
+  RobotTerms terms(model, settings.jets);
+  update_terms(model, logged_state(log, 0), terms);
+  const ControllerOrigin origin = controller_origin(logged_state(log, 0), terms);
+  ReferenceGenerator generator(settings, terms.com, logged_state(log, 0).base.R);
+  MomentumTask task(jets, model.joint_count());
+  MomentumQp qp(jets + model.joint_count());
+  for (int k = 0; k < log.samples; ++k) {
+    const Reference& reference =
+        generator.update(command_at(settings.trajectory, k, settings.step));
+    if (k % every != 0) continue;
+    const RobotState state = logged_state(log, k);
+    const Eigen::VectorXd thrust = log.thrust.row(k).transpose();
+    update_terms(model, state, terms);
+    build_momentum_task(model, settings, origin, state, terms, thrust, reference, task);
+    build_momentum_qp(settings, origin, task, state, thrust, qp);
+    qps.push_back(qp);
+  }
+  return qps;
 }
 
 }  // namespace codesign::dynamics

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "dynamics/flight_log.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "dynamics/model.hpp"
+#include "dynamics/momentum_controller.hpp"
 
 namespace codesign::dynamics {
 
@@ -11,5 +14,11 @@ namespace codesign::dynamics {
 // UrdfOptions::joints). A lost flight is a status of the log, not an exception.
 // Throws std::invalid_argument if settings and model do not fit each other.
 FlightLog simulate_flight(const Model& model, const FlightSettings& settings);
+
+// The momentum QPs of samples 0, every, 2 every, … of a flight, rebuilt from its log: to look into
+// a flight, or to compare solvers on the problems that occur. Throws std::invalid_argument if the
+// log is not of this model and these settings.
+std::vector<MomentumQp> momentum_qps(const Model& model, const FlightSettings& settings,
+                                     const FlightLog& log, int every);
 
 }  // namespace codesign::dynamics

@@ -38,6 +38,16 @@ struct ObjectiveParts {
   std::vector<double> joint_velocity;
 };
 
+// Wall time of a flight by phase of the step [s].
+struct FlightProfile {
+  double plant = 0.0;        // integration, jets
+  double terms = 0.0;        // kinematics, inertias, mass matrix and its factorisation, Jacobians
+  double task = 0.0;         // references, building of the momentum QP
+  double momentum_qp = 0.0;  // its solution
+  double torque = 0.0;       // torque QP and rate limiter
+  double log = 0.0;          // checks and histories
+};
+
 // Samples k = 0 … samples−1 at time k·step: the state at the sample, the thrust acting from then
 // on, references and commands of the same sample. SI units, world axes unless stated.
 struct FlightLog {
@@ -76,6 +86,7 @@ struct FlightLog {
   double min_clearance = 0.0;                            // [m]
   int qp_failures = 0;
   long total_qp_iterations = 0;
+  FlightProfile profile;
 
   // Families of spec §11: rms (SI, independent of the step), script (as the authors' program
   // computes it), paper (as printed).

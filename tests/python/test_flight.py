@@ -34,9 +34,14 @@ def test_published_robot_gives_the_published_objectives(shared_data: Path, robot
     assert log.max_torque < 34.5 and log.max_com_error < 0.16
 
 
-# Rows from both ends of the forearm length, with indefinite and with definite mass matrices; the published program
-# drops base rotations below 1e-6 rad a step, which rows 195 and 268 show.
-@pytest.mark.parametrize("row_id", ["0", "66", "195", "268", "438", "490"])
+# A sample of the 237 rows that benchmarks/reproduce_published.py keeps, over all forearm lengths, with indefinite and
+# with definite mass matrices; the published program drops base rotations below 1e-6 rad a step, which 195 and 268 show.
+ROWS = (
+    "0 66 195 268 438 490 172 323 488 114 464 280 372 236 350 231 168 257 396 391 65 355 167 491 51".split()  # noqa: SIM905
+)
+
+
+@pytest.mark.parametrize("row_id", ROWS)
 def test_published_row_gives_the_published_outputs(shared_data: Path, row_id: str) -> None:
     rows = {row["id"]: row for row in published_robots.read_rows(shared_data / "published" / "designs.csv")}
     optim1 = (shared_data / "published" / "optim1.urdf").read_text()
@@ -45,7 +50,7 @@ def test_published_row_gives_the_published_outputs(shared_data: Path, row_id: st
     settings.rotation_deadband = 1e-6
     log = dyn.simulate_flight(dyn.load_urdf(urdf, joints=settings.joints, as_published=True), settings)
     expected = published_robots.published_outputs(rows[row_id])
-    np.testing.assert_allclose(published_robots.flown_outputs(log), expected, rtol=5e-8)
+    np.testing.assert_allclose(published_robots.flown_outputs(log), expected, rtol=1e-7)
 
 
 def test_unphysical_inertias_are_refused_unless_asked_for(shared_data: Path) -> None:

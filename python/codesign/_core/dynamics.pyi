@@ -18,6 +18,7 @@ __all__: list[str] = [
     "FailureLimits",
     "FlightLog",
     "FlightObjectives",
+    "FlightProfile",
     "FlightSettings",
     "FlightStatus",
     "Gains",
@@ -50,6 +51,7 @@ __all__: list[str] = [
     "load_urdf",
     "locked_inertia",
     "mass_matrix",
+    "momentum_qps",
     "potential_energy",
     "simulate_flight",
     "solve_box_qp",
@@ -1027,6 +1029,41 @@ class ObjectiveParts:
     @property
     def linear_momentum(self) -> float: ...
 
+class FlightProfile:
+    """
+    Wall time of a flight by phase of the step [s].
+    """
+    @property
+    def log(self) -> float:
+        """
+        checks and histories
+        """
+    @property
+    def momentum_qp(self) -> float:
+        """
+        solution of the momentum QP
+        """
+    @property
+    def plant(self) -> float:
+        """
+        integration, jets
+        """
+    @property
+    def task(self) -> float:
+        """
+        references, building of the momentum QP
+        """
+    @property
+    def terms(self) -> float:
+        """
+        kinematics, inertias, mass matrix and its factorisation, Jacobians
+        """
+    @property
+    def torque(self) -> float:
+        """
+        torque QP and rate limiter
+        """
+
 class FlightLog:
     """
     What happened in a flight: histories (read-only arrays that share the log's memory), status and summary. SI units, world axes.
@@ -1142,6 +1179,8 @@ class FlightLog:
         """
     @property
     def paper(self) -> FlightObjectives: ...
+    @property
+    def profile(self) -> FlightProfile: ...
     @property
     def qp_failures(self) -> int: ...
     @property
@@ -1414,6 +1453,20 @@ def mass_matrix(
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
     M (6+n, 6+n) of M nu_dot + b = (0, tau) + sum of J^T wrench; mixed convention.
+    """
+
+def momentum_qps(
+    model: Model, settings: FlightSettings, log: FlightLog, every: typing.SupportsInt | typing.SupportsIndex = 1
+) -> list[
+    tuple[
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    ]
+]:
+    """
+    Momentum QPs (H, g, lower, upper) of samples 0, every, 2 every, ... of a flight, rebuilt from its log. Unknowns: thrust rates, then joint velocities. Raises ValueError if the log is not of this model and these settings.
     """
 
 def potential_energy(
