@@ -132,27 +132,32 @@ def time_in_flight(repeats: int) -> None:
             prox.update(H=H, g=g, l_box=lower, u_box=upper)
             prox.solve()
 
-    one = (np.eye(1), np.ones(1), -np.ones(1), np.ones(1))
-    one_peer = (np.eye(1), np.ones(1), np.array([[1.0, -1.0]]), -np.ones(2))
+    one = (np.eye(1), np.full(1, 0.1), -np.ones(1), np.ones(1))
+    one_peer = (np.eye(1), np.full(1, -0.1), np.array([[1.0, -1.0]]), -np.ones(2))
     tiny = dyn.BoxQpSolver(1)
     calls = len(problems)
     times = cpu_times({"codesign": ours, "quadprog": theirs, "ProxQP": proxqp}, calls, repeats)
-    call = cpu_times(
-        {
-            "codesign": lambda: [tiny.solve(*one) for _ in range(calls)],
-            "quadprog": lambda: [quadprog.solve_qp(*one_peer) for _ in range(calls)],
-        },
-        calls,
-        repeats,
-    )
+
+    def our_call() -> None:
+        for _ in problems:
+            tiny.solve(*one)
+
+    def their_call() -> None:
+        for _ in problems:
+            quadprog.solve_qp(*one_peer)
+
+    call = cpu_times({"codesign": our_call, "quadprog": their_call}, calls, repeats)
     print(f"{calls} momentum QPs of a flight, n = {n}, largest difference to quadprog {max(differences):.1e}")
     print(f"codesign in the flight loop (native, warm) {native:8.2f} us")
     for name, value in times.items():
         share = f", of which the call (n = 1) {call[name]:.2f} us" if name in call else ""
         print(f"{name} from Python{'':10} {value:8.2f} us{share}")
-    net = times["quadprog"] - call["quadprog"]
-    print(f"ratios to quadprog: Python to Python {times['codesign'] / times['quadprog']:.2f};", end=" ")
-    print(f"in the loop to quadprog without its call {native / net:.2f}; to ProxQP {native / times['ProxQP']:.3f}")
+    quadprog_only = times["quadprog"] - call["quadprog"]
+    print("ratios of times")
+    print(f"  Python to Python: {times['codesign'] / times['quadprog']:.2f} quadprog", end=", ")
+    print(f"{times['codesign'] / times['ProxQP']:.2f} ProxQP")
+    print(f"  in the flight loop to quadprog from Python: {native / times['quadprog']:.2f}")
+    print(f"  in the flight loop to quadprog less its call: {native / quadprog_only:.2f}")
 
 
 def main() -> None:
