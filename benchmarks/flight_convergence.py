@@ -1,13 +1,14 @@
 """How the objectives of a flight converge: `rms` family, standard study, repaired inertias, trajectory 1.
 
-    python benchmarks/flight_convergence.py
+    python benchmarks/flight_convergence.py [--control-step 0.004]
 
 Two statements, because the controller is a sampled one. *Loop*: plant, jets, references and controller at steps of
 8, 4, 2 and 1 ms, starting without the published free fall of one step (whose velocity error m g h is part of the
-objective, and of first order itself). *Plant*: the controller keeps its 4 ms, only the integrator between its samples
+objective, and of first order itself). *Plant*: the controller keeps its step, only the integrator between its samples
 is refined. Printed: objective differences of successive halvings and the orders they imply.
 """
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -21,7 +22,6 @@ from codesign import dynamics as dyn  # noqa: E402
 from codesign import load_study  # noqa: E402
 
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
-CONTROL_STEP = 0.004  # of the plant's refinement [s]
 
 
 def fly(model: dyn.Model, step: float, substeps: int, integrator: dyn.Integrator, free_fall: bool) -> np.ndarray:
@@ -50,6 +50,9 @@ def report(title: str, steps: list[float], objectives: list[np.ndarray]) -> None
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--control-step", type=float, default=0.004, help="of the plant's refinement [s]")
+    control = parser.parse_args().control_step
     model = dyn.load_urdf(load_study().build_robot(DESIGN), joints=ironcub_flight.JOINTS)
     loop_steps = [0.008, 0.004, 0.002, 0.001]
     for free_fall in (False, True):
@@ -59,8 +62,9 @@ def main() -> None:
             report(f"loop, {integrator.name}, {start} the free fall", loop_steps, flown)
     substeps = {dyn.Integrator.runge_kutta_4: [1, 2, 4, 8], dyn.Integrator.euler: [1, 2, 4, 8, 16, 32]}
     for integrator, counts in substeps.items():
-        flown = [fly(model, CONTROL_STEP, count, integrator, True) for count in counts]
-        report(f"plant, {integrator.name}, control every 4 ms", [CONTROL_STEP / count for count in counts], flown)
+        flown = [fly(model, control, count, integrator, True) for count in counts]
+        title = f"plant, {integrator.name}, control every {1e3 * control:g} ms"
+        report(title, [control / count for count in counts], flown)
 
 
 if __name__ == "__main__":
