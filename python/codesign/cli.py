@@ -373,6 +373,9 @@ def stress(
     ] = None,
     vtu: Annotated[Path | None, typer.Option(help="Where to write displacement and stress, for ParaView.")] = None,
     png: Annotated[Path | None, typer.Option(help="Where to write a picture of the stressed part.")] = None,
+    exclusion: Annotated[
+        float | None, typer.Option(metavar="MM", help="No peak is read nearer to clamps and load borders; default 3.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> int:
     """Safety factor of any closed surface; exit code 1 if the material yields.
@@ -382,7 +385,7 @@ def stress(
     """
     from codesign.stress_command import find_material, stress_document
 
-    document = stress_document(part, scale, find_material(material), fix, load, edge_length, vtu, png)
+    document = stress_document(part, scale, find_material(material), fix, load, edge_length, vtu, png, exclusion)
     if as_json:
         print_json(document)
     else:

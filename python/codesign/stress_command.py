@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from codesign import fem
-from codesign.errors import CodesignError
+from codesign.errors import CodesignError, MeshError
+from codesign.surface_regions import Box, Facing, Near, Place, label_surface
 from codesign.units import GIGA, MEGA, MILLIMETRE
 
 ELEMENTS_WANTED = 30_000  # of the default edge length, at most
@@ -30,29 +31,30 @@ class StressInputError(CodesignError, ValueError):
     """An option of `codesign stress` that cannot be used; the message names it and says why."""
 
 
-def parse_selection(text: str, scale: float) -> fem.Selection:
+def parse_selection(text: str, scale: float) -> Place:
     """`near:x,y,z`, `box:x0,y0,z0,x1,y1,z1` or `normal:nx,ny,nz[:degrees]`; coordinates in units of `scale` metres.
 
     Raises: StressInputError.
     """
     kind, _, rest = text.strip().partition(":")
     if kind == "near":
-        return fem.faces_near(np.array(_numbers(rest, 3, text)) * scale)
+        x, y, z = _numbers(rest, 3, text)
+        return Near((x * scale, y * scale, z * scale))
     if kind == "box":
         corners = np.array(_numbers(rest, 6, text)).reshape(2, 3) * scale
-        return fem.faces_in_box(corners.min(axis=0), corners.max(axis=0))
+        return Box(tuple(corners.min(axis=0)), tuple(corners.max(axis=0)))
     if kind == "normal":
         direction, _, angle = rest.partition(":")
-        normal = np.array(_numbers(direction, 3, text))
-        if not normal.any():
+        x, y, z = _numbers(direction, 3, text)
+        if not (x or y or z):
             raise StressInputError(f"selection {text!r}: the direction is zero")
-        return fem.faces_with_normal(normal, _numbers(angle, 1, text)[0] if angle else 1.0)
+        return Facing((x, y, z), _numbers(angle, 1, text)[0] if angle else 1.0)
     raise StressInputError(
         f"selection {text!r}: expected near:x,y,z, box:x0,y0,z0,x1,y1,z1 or normal:nx,ny,nz[:degrees]"
     )
 
 
-def parse_load(text: str, scale: float) -> fem.Force:
+def parse_load(text: str, scale: float) -> tuple[Place, tuple[float, ...]]:
     """`SEL: fx fy fz`, the total force in newton, spread over the selection's area.
 
     Raises: StressInputError.
@@ -63,7 +65,7 @@ def parse_load(text: str, scale: float) -> fem.Force:
     values = _numbers(",".join(force.replace(",", " ").split()), 3, text)
     if not any(values):
         raise StressInputError(f"load {text!r}: the force is zero")
-    return fem.Force(parse_selection(where, scale), values)
+    return parse_selection(where, scale), values
 
 
 def find_material(text: str) -> fem.Material:
@@ -94,6 +96,12 @@ def default_edge_length(surface: fem.SurfaceMesh) -> float:
     return max(2.0 * volume / area / WALLS, math.cbrt(8.0 * volume / ELEMENTS_WANTED))
 
 
+def default_exclusion(surface: fem.SurfaceMesh) -> float:
+    """Exclusion distance [m]: 3 mm, or a tenth of the extent of a part smaller than 30 mm."""
+    extent = float(np.linalg.norm(np.ptp(surface.points, axis=0)))
+    return min(3.0 * MILLIMETRE, 0.1 * extent)
+
+
 def stress_document(
     path: Path,
     scale: float,
@@ -103,6 +111,7 @@ def stress_document(
     edge_length_mm: float | None = None,
     vtu: Path | None = None,
     png: Path | None = None,
+    exclusion_mm: float | None = None,
 ) -> dict[str, Any]:
     """Meshes, solves and gives the JSON document of `codesign stress`; SI units.
 
@@ -110,24 +119,28 @@ def stress_document(
         path: STL file. scale: metres per unit of the file, also of the selections' coordinates.
         fix: selections held in all directions. load: texts `SEL: fx fy fz`.
         edge_length_mm: of the elements; from the wall thickness if absent. vtu, png: the stress field, a picture of it.
+        exclusion_mm: the peak stress is read farther than this from clamps and from borders of loaded faces; 3 mm, or a
+            tenth of a small part's extent, if absent.
 
     Raises: MeshError, SolverError, StressInputError.
     """
     if not fix or not load:
         raise StressInputError("--fix and --load: at least one of each is needed")
-    if edge_length_mm is not None and not (math.isfinite(edge_length_mm) and edge_length_mm > 0.0):
-        raise StressInputError("--edge-length: a positive number of millimetres is needed")
-    if not (math.isfinite(scale) and scale > 0.0):
-        raise StressInputError("--scale: a positive number of metres per unit is needed")
-    supports = [fem.Support(parse_selection(text, scale)) for text in fix]
-    loads = [parse_load(text, scale) for text in load]
+    for name, value in (("--edge-length", edge_length_mm), ("--exclusion", exclusion_mm), ("--scale", scale)):
+        if value is not None and not (math.isfinite(value) and value > 0.0):
+            raise StressInputError(f"{name}: a positive number is needed")
+    held = [parse_selection(text, scale) for text in fix]
+    pushed = [parse_load(text, scale) for text in load]
     start = time.perf_counter()
     surface = fem.load_surface(path, scale)
     size = default_edge_length(surface) if edge_length_mm is None else edge_length_mm * MILLIMETRE
-    mesh = fem.tetrahedralize(surface, size)
+    exclusion = default_exclusion(surface) if exclusion_mm is None else exclusion_mm * MILLIMETRE
+    mesh, places = _mesh(surface, [*held, *(place for place, _ in pushed)], size)
+    supports = [fem.Support(place) for place in places[: len(held)]]
+    loads = [fem.Force(place, force) for place, (_, force) in zip(places[len(held) :], pushed, strict=True)]
     meshed = time.perf_counter()
     try:
-        result = fem.solve_static(mesh, material, supports, loads)
+        result = fem.solve_static(mesh, material, supports, loads, exclusion_distance=exclusion)
     except ValueError as error:
         raise StressInputError(str(error)) from None
     solved = time.perf_counter()
@@ -152,11 +165,12 @@ def stress_document(
         "stress_error": result.stress_error,
         "max_displacement": result.max_displacement,
         "work": result.work,
-        "applied_force": [float(x) for x in np.array([force.force for force in loads]).sum(axis=0)],
+        "applied_force": [float(x) for x in np.array([force for _, force in pushed]).sum(axis=0)],
         "reaction_force": [float(x) for x in np.asarray(result.reactions).sum(axis=0)],
         "mass": quality.volume * material.density if material.density > 0.0 else None,
         "volume": quality.volume,
         "edge_length": size,
+        "exclusion_distance": exclusion,
         "nodes": len(mesh.nodes),
         "tetrahedra": len(mesh.tets),
         "mesh": {
@@ -167,6 +181,15 @@ def stress_document(
         },
         "seconds": {"mesh": meshed - start, "solve": solved - meshed},
     }
+
+
+def _mesh(surface: fem.SurfaceMesh, places: Sequence[Place], size: float) -> tuple[fem.TetMesh, list[fem.Selection]]:
+    """The mesh and the places on it, with exact borders unless they are too ragged for the edge length."""
+    labelled, selections = label_surface(surface, places)
+    try:
+        return fem.tetrahedralize(labelled, size), selections
+    except MeshError:
+        return fem.tetrahedralize(surface, size), [place.on_mesh() for place in places]
 
 
 def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:

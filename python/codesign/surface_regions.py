@@ -1,0 +1,99 @@
+"""Places on the surface of a file for supports and loads; their borders become lines of the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from codesign import fem
+
+MAX_BEND_DEG = 30.0  # between two triangles of a smooth piece of surface
+
+Triangles = NDArray[np.bool_]  # (m,) of the surface: selected or not
+
+
+@dataclass(frozen=True)
+class Near:
+    """The smooth piece of surface nearest to a point [m]."""
+
+    point: tuple[float, float, float]
+
+    def triangles(self, surface: fem.SurfaceMesh) -> Triangles:
+        """Those of the surface."""
+        mesh = trimesh.Trimesh(surface.points, surface.triangles, process=False)
+        points = np.tile(self.point, (len(mesh.faces), 1))
+        near = trimesh.triangles.closest_point(mesh.triangles, points)  # type: ignore[no-untyped-call]
+        start = int(np.argmin(np.linalg.norm(near - self.point, axis=1)))
+        smooth = mesh.face_adjacency[mesh.face_adjacency_angles <= np.radians(MAX_BEND_DEG)]
+        piece = trimesh.graph.connected_component_labels(  # type: ignore[no-untyped-call]
+            smooth, node_count=len(mesh.faces)
+        )
+        chosen: Triangles = piece == piece[start]
+        return chosen
+
+    def on_mesh(self) -> fem.Selection:
+        """Sides of elements, where the surface's triangles do not tell."""
+        return fem.faces_near(self.point, MAX_BEND_DEG)
+
+
+@dataclass(frozen=True)
+class Box:
+    """What lies in a box [m]: triangles of the surface and sides of elements."""
+
+    lower: tuple[float, float, float]
+    upper: tuple[float, float, float]
+
+    def triangles(self, surface: fem.SurfaceMesh) -> Triangles:
+        """Those of the surface."""
+        inside = np.all((surface.points >= self.lower) & (surface.points <= self.upper), axis=1)
+        chosen: Triangles = inside[surface.triangles].all(axis=1)
+        return chosen
+
+    def on_mesh(self) -> fem.Selection:
+        """Sides of elements."""
+        return fem.faces_in_box(self.lower, self.upper)
+
+
+@dataclass(frozen=True)
+class Facing:
+    """What looks in a direction within an angle [deg]."""
+
+    normal: tuple[float, float, float]
+    angle: float
+
+    def triangles(self, surface: fem.SurfaceMesh) -> Triangles:
+        """Those of the surface."""
+        a, b, c = (surface.points[surface.triangles[:, k]] for k in range(3))
+        normals = np.cross(b - a, c - a)
+        cosine = normals @ np.asarray(self.normal) / np.linalg.norm(self.normal)
+        chosen: Triangles = cosine >= np.cos(np.radians(self.angle)) * np.linalg.norm(normals, axis=1)
+        return chosen
+
+    def on_mesh(self) -> fem.Selection:
+        """Sides of elements, where the surface's triangles do not tell."""
+        return fem.faces_with_normal(self.normal, self.angle)
+
+
+Place = Near | Box | Facing
+
+
+def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> tuple[fem.SurfaceMesh, list[fem.Selection]]:
+    """The surface with a named face for each place (and each overlap), and the places as selections of its mesh.
+
+    A box also takes sides of elements that it holds although it cuts the triangle of the surface they lie on.
+    """
+    masks = np.array([place.triangles(surface) for place in places])
+    kinds, face = np.unique(masks, axis=1, return_inverse=True)
+    names = [f"region {i}" if kind.any() else "" for i, kind in enumerate(kinds.T)]
+    labelled = fem.SurfaceMesh(surface.points, surface.triangles, face.ravel().tolist(), names)
+    selections = []
+    for place, kind in zip(places, kinds, strict=True):
+        parts: list[str | fem.Selection] = [name for name, chosen in zip(names, kind, strict=True) if chosen]
+        if isinstance(place, Box) or not parts:
+            parts.append(place.on_mesh())
+        selections.append(fem.select_union(*parts))
+    return labelled, selections
