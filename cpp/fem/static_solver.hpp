@@ -20,7 +20,8 @@
 // by quadratic tetrahedra: order, assemble, factorise, solve, check the residual, recover stress.
 namespace codesign::fem {
 
-// automatic: direct if the factor fits into the memory limit (known before it is computed).
+// automatic: direct unless the factor is larger than the memory limit or takes longer than
+// conjugate gradients for one load case; both are known before it is computed.
 enum class LinearSolver { automatic, direct, iterative };
 
 struct StaticSettings {
@@ -76,8 +77,8 @@ class StaticSystem {
   // Throws SolverError if the residual misses the tolerance.
   StaticResult solve(const std::vector<Load>& loads) const;
 
-  // The lowest modes on the supports, from the same factor. Throws SolverError,
-  // std::invalid_argument: no density, count < 1, or solved iteratively.
+  // The lowest modes on the supports, from the same factor if there is one. Throws SolverError,
+  // std::invalid_argument: no density, count < 1.
   NaturalModes natural_modes(int count) const;
 
   const TetMesh& mesh() const;

@@ -48,8 +48,8 @@ class StressSettings:
 
     @property
     def segments(self) -> int:
-        """Chords on a full circle of the surface that is meshed."""
-        return 48 if self.accuracy == "optimisation" else 96
+        """Chords on a full circle of the surface that is meshed; fine meshes would find the edges of coarse ones."""
+        return 48 if self.accuracy == "optimisation" else 128
 
 
 def part_case(part: Part, settings: StressSettings) -> _core.PartCase:

@@ -46,7 +46,7 @@ class StaticSystem:
         copies: 2 if the mesh is one half of a symmetric part: work and stress_volume then count the whole.
         residual_tolerance: largest relative residual accepted.
         solver: "direct" factorises, "iterative" (conjugate gradients, two-level preconditioner) needs far less memory;
-            "automatic" takes the factor if it fits into memory_limit.
+            "automatic" takes the factor if it fits into memory_limit and is the faster way for one load case.
         memory_limit: [bytes] for the factor.
 
     Raises:
@@ -85,7 +85,7 @@ class StaticSystem:
         return self._system.solve(native_loads(self.mesh, loads))
 
     def natural_frequencies(self, count: int = 6) -> Modes:
-        """The lowest modes on the supports, from the same factor. Raises: ValueError if it was solved iteratively."""
+        """The lowest modes on the supports, from the same factor if there is one. Raises: ValueError: no density."""
         return Modes.of(self._system.natural_modes(count))
 
 

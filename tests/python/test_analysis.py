@@ -37,7 +37,7 @@ class HoledStrip(Part):
 
     def stress_case(self, settings: StressSettings) -> _core.PartCase:
         case = default_case(self, settings)
-        case.size = fem.SizeField(2e-3 if settings.accuracy == "optimisation" else 1.6e-3)
+        case.size = fem.SizeField(1.5e-3 if settings.accuracy == "optimisation" else 1.3e-3)
         return case
 
 
@@ -55,15 +55,15 @@ def part():
 
 
 def test_refinement_around_the_peak_reaches_the_tolerance_or_says_not(part):
-    case = part_case(part, SETTINGS)
+    case = part_case(part, replace(SETTINGS, accuracy="fine"))
     once = _core.analyse_part(case)
     assert once.refinements == 0
     assert once.converged == (once.result.stress_error <= 0.05 * once.result.peak_stress)
-    case.max_refinements = 4
+    case.max_refinements = 2
     refined = _core.analyse_part(case)
     assert refined.converged
     assert refined.stopped == ""
-    assert 1 <= refined.refinements <= 4
+    assert 1 <= refined.refinements <= 2
     assert refined.result.stress_error <= 0.05 * refined.result.peak_stress
     assert refined.change <= 0.05
     # Peterson's factor 2.51 of the net section for a hole of a fifth of the width; 3-D effects stay below 4 %
