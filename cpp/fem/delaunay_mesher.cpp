@@ -203,7 +203,7 @@ struct Watch {
   unsigned calls = 0;
 
   void check() {
-    if ((++calls & 0x3FF) == 0 && thread_seconds() > deadline) stop();
+    if ((++calls & 0x3F) == 0 && thread_seconds() > deadline) stop();
   }
   [[noreturn]] void stop() const {
     throw MeshError("meshing was stopped after " + std::to_string(limit) +

@@ -220,6 +220,17 @@ def test_bad_surfaces_are_refused():
         fem.tetrahedralize(apart, 0.3)
 
 
+def test_a_wedge_too_thin_to_mesh_is_stopped():
+    """Two sharp lines at 0.2 degrees need ever smaller balls: the clock ends it."""
+    tip = np.radians(0.2)
+    outline = np.array([[0.0, 0.0], [0.1, 0.0], [0.1 * np.cos(tip), 0.1 * np.sin(tip)]])
+    points = np.vstack([np.column_stack([outline, np.full(3, z)]) for z in (0.0, 0.02)])
+    sides = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]]
+    wedge = fem.SurfaceMesh(points, [[0, 2, 1], [3, 4, 5], *sides])
+    with pytest.raises(MeshError, match="time_limit"):
+        fem.tetrahedralize(wedge, 0.005, time_limit=0.5)
+
+
 @pytest.mark.parametrize("name", ["optim1_bracket.stl", "optim1_l_forearm.stl", "optim3_l_forearm.stl"])
 def test_published_parts_mesh_as_they_are(shared_data, name):
     surface = fem.load_surface(shared_data / "parts" / name, scale=1e-3)
