@@ -1,6 +1,6 @@
 """Error estimate of the peak stress against the true error, on designs spread over the grid; table of docs/fem.md.
 
-python benchmarks/stress_error.py [every k-th design, 1 if omitted]
+python benchmarks/stress_error.py [every k-th design, 1 if omitted] [factor on the analysed edge lengths]
 
 True error: difference from the fine mesh with half its edge length around the peak.
 """
@@ -12,7 +12,7 @@ import time
 from dataclasses import replace
 
 import codesign
-from codesign import _core
+from codesign import _core, fem
 from codesign.analysis import StressSettings
 from codesign.geometry.part import Part
 from codesign.pipeline import stress_settings
@@ -49,10 +49,13 @@ def reference(part: Part, settings: StressSettings) -> _core.PartAnalysis:
     return _core.analyse_part(case)
 
 
-def row(part: Part, settings: StressSettings) -> bool:
+def row(part: Part, settings: StressSettings, factor: float) -> bool:
     """Prints one design; whether the true error lies inside the estimate."""
     start = time.process_time()
-    analysed = _core.analyse_part(part.stress_case(settings))  # type: ignore[attr-defined]
+    case = part.stress_case(settings)  # type: ignore[attr-defined]
+    sources = [fem.SizeSource(s.points, factor * s.size, s.growth, s.radius) for s in case.size.sources]
+    case.size = fem.SizeField(case.size.base, sources)
+    analysed = _core.analyse_part(case)
     seconds = time.process_time() - start
     result, exact = analysed.result, reference(part, settings).result
     deviation = result.peak_stress / exact.peak_stress - 1.0
@@ -70,6 +73,7 @@ def row(part: Part, settings: StressSettings) -> bool:
 
 def main() -> None:
     step = int(sys.argv[1]) if len(sys.argv) > 1 else 1
+    factor = float(sys.argv[2]) if len(sys.argv) > 2 else 1.0
     config = codesign.load_study("ironcub").config
     print("| part | peak, MPa | reference | true error | estimate | inside | estimate of the reference | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
@@ -79,7 +83,7 @@ def main() -> None:
         (ForearmJetSupport, "forearm_support", FOREARMS),
     ):
         settings = stress_settings(config, name)
-        inside += [row(kind(*theta), settings) for theta in designs[::step]]
+        inside += [row(kind(*theta), settings, factor) for theta in designs[::step]]
     print(f"\n{sum(inside)} of {len(inside)} true errors lie inside the estimate")
 
 
