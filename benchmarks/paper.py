@@ -14,7 +14,7 @@ import argparse
 import csv
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -348,9 +348,7 @@ def main() -> None:
     if load_validation(given.run) is None:
         validate(given.run, workers=given.workers)
     data = read_report_data(given.run, study)
-    if data.baseline is None:
-        data = replace(data, baseline=study.evaluate(study.baseline))
-    compute_details(study, data)
+    data = compute_details(study, data)
     flown = load_validation(given.run)
     rows = read_rows(given.published / "designs.csv")
     wanted = [row for row in rows if row.best]

@@ -373,15 +373,13 @@ class Viewer:
                 self.go_to(0.0 if moment > self._slider.max else moment)
 
     def _detail(self, choice: Choice) -> Detail:
-        evaluation = choice.evaluation or self._study.evaluate(choice.design, trajectory=self._trajectory)
-        key = detail_key(evaluation)
-        if self._trajectory is None and key in self._details:
-            return self._details[key]
-        if self._trajectory is not None:
-            evaluation = self._study.evaluate(choice.design, trajectory=self._trajectory)
-        detail = compute_detail(self._study, evaluation)
+        known = choice.evaluation
+        if self._trajectory is None and known is not None and detail_key(known) in self._details:
+            return self._details[detail_key(known)]
+        flown = None if known is None else known.flight.get("trajectory")
+        detail = compute_detail(self._study, choice.design, self._trajectory or flown)
         if self._trajectory is None:
-            self._details[key] = detail
+            self._details[detail_key(detail.evaluation)] = detail
             if self._folder is not None:
                 save_detail(self._folder, detail)
         return detail

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from codesign import fem
-from codesign.evaluation import Evaluation
 from codesign.flight_setup import joint_names
 from codesign.pipeline import evaluate_with_fields
 from codesign.report.details import Detail, FlightHistory, StressField, flight_history
 
 
-def compute_detail(study: Any, evaluation: Evaluation) -> Detail:
-    """Stress fields and flight history of an evaluated design, on the trajectory that it was judged by.
+def compute_detail(study: Any, theta: Mapping[str, float], trajectory: str | None = None) -> Detail:
+    """Evaluation, stress fields and flight history of a design; `trajectory`: by default the study's own.
 
     Raises: CodesignError where the chain does.
     """
-    design = study.space.design(evaluation.design)
-    config = study.configured(design)
-    trajectory = evaluation.flight.get("trajectory") or config.flight.trajectory
-    _, analyses, flight = evaluate_with_fields(study, design, trajectory)
+    design = study.space.design(theta)
+    evaluation, analyses, flight = evaluate_with_fields(study, design, trajectory)
     fields = {name: stress_field(analysis.mesh, analysis.result) for name, analysis in analyses.items()}
-    return Detail(evaluation, fields, history(config.flight, trajectory, flight))
+    flown = trajectory or study.config.flight.trajectory
+    return Detail(evaluation, fields, history(study.configured(design).flight, flown, flight))
 
 
 def history(flight: Any, trajectory: str, log: Any) -> FlightHistory:

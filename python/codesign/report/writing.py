@@ -52,9 +52,7 @@ def write_report(
     current = study if same_study(directory, study) else None
     run = read_report_data(directory, study)
     if compute and current is not None:
-        if run.baseline is None and current.baseline is not None:
-            run = replace(run, baseline=current.evaluate(current.baseline))
-        compute_details(current, run)
+        run = compute_details(current, run)
     details = load_details(directory)
     data = FigureData(run, details, current, load_validation(directory))
     shown = {key: page_detail(detail) for key, detail in _shown(run, details).items()}
@@ -62,22 +60,33 @@ def write_report(
     return ReportPaths(page, write_figures(data, directory / FIGURE_FOLDER) if figures else ())
 
 
-def compute_details(study: Any, run: ReportData) -> None:
-    """Computes and keeps the details of the highlighted designs that have none; a failure is logged, not raised."""
+def compute_details(study: Any, run: ReportData) -> ReportData:
+    """Computes and keeps details of the highlighted designs that have none; a failure is logged, not raised.
+
+    Returns: the run, with its baseline if it had none.
+    """
     known = load_details(run.directory)
     missing = [e for e in run.highlights.values() if detail_key(e) not in known and e.status != "failed"]
-    if not missing:
-        return
+    wanted = [(e.design, e.flight.get("trajectory")) for e in missing]
+    unknown = run.baseline is None and study.baseline is not None
+    if unknown:
+        wanted.append((study.baseline.to_dict(), None))
+    if not wanted:
+        return run
     from codesign.report.compute import compute_detail
 
-    def compute(evaluation: Evaluation) -> None:
+    def compute(asked: tuple[dict[str, float], str | None]) -> Evaluation | None:
         try:
-            save_detail(run.directory / FOLDER, compute_detail(study, evaluation))
+            detail = compute_detail(study, *asked)
+            save_detail(run.directory / FOLDER, detail)
         except (CodesignError, OSError) as error:
-            logger.warning("no details of design %s: %s", evaluation.design, error)
+            logger.warning("no details of design %s: %s", asked[0], error)
+            return None
+        return detail.evaluation
 
-    with ThreadPoolExecutor(min(len(missing), os.cpu_count() or 1)) as pool:  # the native chain releases the GIL
-        list(pool.map(compute, missing))
+    with ThreadPoolExecutor(min(len(wanted), os.cpu_count() or 1)) as pool:  # the native chain releases the GIL
+        evaluations = list(pool.map(compute, wanted))
+    return replace(run, baseline=evaluations[-1]) if unknown else run
 
 
 def _picture(data: FigureData) -> bytes | None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import logging
+import multiprocessing
 import os
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,23 +46,43 @@ FIGURES = (
 
 
 def write_figures(data: FigureData, folder: Path, names: tuple[str, ...] | None = None) -> tuple[Path, ...]:
-    """Draws the figures (all, or those named) that the run has data for; a figure that fails is logged and left out."""
-    paths: list[Path] = []
+    """Draws the figures (all, or those named) that the run has data for; a figure that fails is logged and left out.
+
+    Several are drawn at a time, in copies of this process.
+    """
+    wanted = [k for k, kind in enumerate(FIGURES) if names is None or kind.name in names]
     folder.mkdir(parents=True, exist_ok=True)
-    with style.style():
-        for kind in FIGURES:
-            if names is not None and kind.name not in names:
-                continue
-            try:
-                figure = kind.draw(data)
-            except CodesignError as error:
-                logger.warning("figure %s: %s", kind.name, error)
-                continue
-            if figure is not None:
-                paths.append(_save(figure, folder / f"{kind.name}.png"))
-                figure.set_layout_engine("none")  # as laid out for the PNG, which takes as long as drawing
-                paths.append(_save(figure, folder / f"{kind.name}.pdf"))
-    return tuple(paths)
+    fork = multiprocessing.get_context("fork")
+    with ProcessPoolExecutor(os.cpu_count(), fork, initializer=_inherit, initargs=(data, folder)) as pool:
+        drawn = list(pool.map(_draw, wanted))
+    for _, problem in drawn:
+        if problem is not None:
+            logger.warning(problem)
+    return tuple(path for paths, _ in drawn for path in paths)
+
+
+_inherited: tuple[FigureData, Path]  # of a drawing process
+
+
+def _inherit(data: FigureData, folder: Path) -> None:
+    global _inherited
+    _inherited = data, folder
+
+
+def _draw(number: int) -> tuple[list[Path], str | None]:
+    """One figure's files, or why there are none."""
+    data, folder = _inherited
+    kind = FIGURES[number]
+    try:
+        with style.style():
+            figure = kind.draw(data)
+            if figure is None:
+                return [], None
+            png = _save(figure, folder / f"{kind.name}.png")
+            figure.set_layout_engine("none")  # as laid out for the PNG, which takes as long as drawing
+            return [png, _save(figure, folder / f"{kind.name}.pdf")], None
+    except CodesignError as error:
+        return [], f"figure {kind.name}: {error}"
 
 
 def _save(figure: Any, path: Path) -> Path:
