@@ -179,8 +179,11 @@ def validation_ours(flown: Validation, data: ReportData) -> str:
             rows.append((role, objective.label.lower(), *cells, *means))
     labels = [name.replace("trajectory_", "T") for name in flown.trajectories]
     lost = [f for f in flown.flights if not f.completed]
-    note = f"\n{len(lost)} of {len(flown.flights)} flights were lost" + (
-        ": " + "; ".join(sorted({f"{f.role} on {f.trajectory}" for f in lost})) + ".\n" if lost else ".\n"
+    calm_lost = sum(f.seed is None for f in lost)
+    by_role = ", ".join(f"{role} {sum(f.role == role for f in lost)}" for role in flown.roles)
+    note = (
+        f"\n{len(lost)} of {len(flown.flights)} flights were lost, {calm_lost} of them calm ({by_role}); they are left "
+        "out of the means.\n"
     )
     return table(("design", "rms objective", *labels, "mean", "mean, disturbed"), rows) + note
 
@@ -304,7 +307,9 @@ def draw_fronts(path: Path, data: ReportData, rows: Sequence[Row], flown: Mappin
             *there[:, :2].T, 12, "none", "o", edgecolors=style.INK, linewidths=0.5, label="theirs, flown here"
         )
         if data.baseline_vector is not None:
-            right.scatter(*data.baseline_vector[:2], 34, style.ORIGINAL, "D", edgecolors="white", label="original")
+            right.scatter(
+                *data.baseline_vector[:2], 34, style.ORIGINAL, marker="D", edgecolors="white", label="original"
+            )
         right.set(title="here (rms objectives)", xlabel=data.objectives[0].title, ylabel=data.objectives[1].title)
         seen = np.vstack([own[data.front], there, data.vector(data.baseline)])[:, :2]
         low, high = seen.min(axis=0), seen.max(axis=0)

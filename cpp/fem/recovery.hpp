@@ -9,9 +9,9 @@
 namespace codesign::fem {
 
 // Continuous stress at the nodes by superconvergent patch recovery: around each corner node a
-// quadratic polynomial is fitted to the point stresses of the surrounding elements (at least ten),
-// near points weighing most; it is read at the corner and, averaged over the two ends, at the
-// mid-edge nodes.
+// quadratic polynomial is fitted to the point stresses of the surrounding elements (at least ten,
+// and more where these hardly determine it), near points weighing most; it is read at the corner
+// and, averaged over the two ends, at the mid-edge nodes.
 // Source: Zienkiewicz and Zhu 1992; the weights follow moving least squares. Measured on notches
 // and on a thick cylinder (docs/fem.md): third order where averaged element stresses have second.
 Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);
