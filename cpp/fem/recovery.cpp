@@ -21,9 +21,8 @@ constexpr double kExponent = 3.0, kSmoothExponent = 2.0, kSharpExponent = 4.0;
 // Holds the quadratic terms where a patch does not determine them.
 constexpr double kRidge = 1e-10;
 // A patch whose least pivot is below this share of the weights hardly determines a quadratic: it is
-// enlarged. Without it single nodes of the shipped grid overshoot, by up to 150 %.
+// given one ring more. Without it single nodes of the shipped grid overshoot, by up to 150 %.
 constexpr double kLeastPivot = 1e-4;
-constexpr int kMaxRings = 3;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -76,6 +75,7 @@ class PatchFinder {
     }
     core_ = patch_.size();
     rim_ = 0;
+    grown_ = false;
     while (patch_.size() < kMinPatch && grow()) {
     }
     return patch_;
@@ -87,6 +87,9 @@ class PatchFinder {
     for (; rim_ < ring; ++rim_) add_neighbours(patch_[rim_]);
     return patch_.size() > ring;
   }
+
+  // Adds a ring, unless that was done for this corner before.
+  bool grow_once() { return !std::exchange(grown_, true) && grow(); }
 
   const std::vector<int>& patch() const { return patch_; }
   std::size_t core() const { return core_; }  // of these the first ones touch the node
@@ -112,6 +115,7 @@ class PatchFinder {
   Incidence incidence_;
   std::vector<int> seen_, patch_;  // the last patch that each element was in; elements
   int number_ = 0;                 // of the patch
+  bool grown_ = false;
   std::size_t core_ = 0,
               rim_ = 0;  // elements that touch the node; whose neighbours are in the patch
 };
@@ -174,11 +178,10 @@ PatchField fit_around(const TetMesh& mesh, int corner, PatchFinder& finder, cons
                       const Stresses& stress) {
   const std::vector<int>& patch = finder.around(corner);
   PatchField field{mesh.nodes.row(corner).transpose(), 0.0, {}, 0.0};
-  for (int ring = 0; ring <= kMaxRings; ++ring) {
+  do {
     field.radius = patch_radius(mesh, patch, field.origin);
     fit(patch, x, stress, kExponent, field);
-    if (field.least_pivot > kLeastPivot || !finder.grow()) break;
-  }
+  } while (field.least_pivot < kLeastPivot && finder.grow_once());
   return field;
 }
 
