@@ -317,7 +317,7 @@ def draw_fronts(path: Path, data: ReportData, rows: Sequence[Row], flown: Mappin
         right.set(xlim=(low[0] - margin[0], high[0] + margin[0]), ylim=(low[1] - margin[1], high[1] + margin[1]))
         figure.colorbar(dots, ax=right, aspect=32, pad=0.02, label="thrust (N)")
         for axes in (left, right):
-            axes.legend(loc="upper right")
+            axes.legend(loc="upper right", frameon=True, edgecolor="none", framealpha=0.85)
         figure.savefig(path, metadata={"Software": None})
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,7 @@ def validation(data: FigureData) -> Any:
             )
         axes.axhline(0.0, color=style.ORIGINAL, linewidth=1.0, label="original")
         axes.set_title(objective.label)
-        axes.set_xticks(range(len(roles)), [role.replace(" ", "\n", 1) for role in roles], fontsize=6.5)
+        axes.set_xticks(range(len(roles)), [textwrap.fill(role, 14) for role in roles], fontsize=6)
         axes.yaxis.set_major_formatter(PercentFormatter(1.0))
         axes.grid(visible=False, axis="x")
     figure.supylabel("change from the original", fontsize=8)
