@@ -6,6 +6,7 @@ import io
 import logging
 import os
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from codesign.errors import CodesignError, StoreError
 from codesign.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
-from codesign.report.figures import FigureData, write_figures
+from codesign.report.figures import FigureData, drawing
 from codesign.report.figures.solids import hero
 from codesign.report.page.encode import page_detail
 from codesign.report.page.html import render
@@ -56,8 +57,12 @@ def write_report(
     details = load_details(directory)
     data = FigureData(run, details, current, load_validation(directory))
     shown = {key: page_detail(detail) for key, detail in _shown(run, details).items()}
-    page = _write(directory / PAGE, render(run, shown, picture=_picture(data), validation=data.validation))
-    return ReportPaths(page, write_figures(data, directory / FIGURE_FOLDER) if figures else ())
+    meanwhile: AbstractContextManager[list[Path]] = nullcontext([])
+    if figures:
+        meanwhile = drawing(data, directory / FIGURE_FOLDER)
+    with meanwhile as drawn:
+        page = _write(directory / PAGE, render(run, shown, picture=_picture(data), validation=data.validation))
+    return ReportPaths(page, tuple(drawn))
 
 
 def compute_details(study: Any, run: ReportData) -> ReportData:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from codesign.report.figures.data import FigureData
 
 logger = logging.getLogger(__name__)
 
-__all__ = ["FIGURES", "FigureData", "FigureKind", "write_figures"]
+__all__ = ["FIGURES", "FigureData", "FigureKind", "drawing", "write_figures"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,19 +47,26 @@ FIGURES = (
 
 
 def write_figures(data: FigureData, folder: Path, names: tuple[str, ...] | None = None) -> tuple[Path, ...]:
-    """Draws the figures (all, or those named) that the run has data for; a figure that fails is logged and left out.
+    """Draws the figures (all, or those named) that the run has data for; a figure that fails is logged and left out."""
+    with drawing(data, folder, names) as paths:
+        pass
+    return tuple(paths)
 
-    Several are drawn at a time, in copies of this process.
-    """
+
+@contextmanager
+def drawing(data: FigureData, folder: Path, names: tuple[str, ...] | None = None) -> Iterator[list[Path]]:
+    """Draws figures as `write_figures` does, in copies of this process, while the body runs; then fills the list."""
     wanted = [k for k, kind in enumerate(FIGURES) if names is None or kind.name in names]
     folder.mkdir(parents=True, exist_ok=True)
+    paths: list[Path] = []
     fork = multiprocessing.get_context("fork")
     with ProcessPoolExecutor(os.cpu_count(), fork, initializer=_inherit, initargs=(data, folder)) as pool:
-        drawn = list(pool.map(_draw, wanted))
-    for _, problem in drawn:
-        if problem is not None:
-            logger.warning(problem)
-    return tuple(path for paths, _ in drawn for path in paths)
+        drawn = pool.map(_draw, wanted)
+        yield paths
+        for files, problem in drawn:
+            paths += files
+            if problem is not None:
+                logger.warning(problem)
 
 
 _inherited: tuple[FigureData, Path]  # of a drawing process
