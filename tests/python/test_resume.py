@@ -18,6 +18,7 @@ from codesign.store import DATABASE, RunStore
 from fake_study import FakeStudy, study
 
 SCRIPT = """
+import signal; signal.signal(signal.SIGINT, signal.default_int_handler)  # shells start background jobs without it
 import json, sys
 from fake_study import FakeStudy
 from codesign.optimization import optimize, resume
