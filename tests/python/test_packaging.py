@@ -29,6 +29,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
         *("--build-base", str(base / "build"), "--install-base", str(base / "install")),
         *("--cmake-args", "-GNinja", "-DCMAKE_BUILD_TYPE=None", f"-DPython_EXECUTABLE={sys.executable}"),
         cwd=base,
+        MAKEFLAGS=f"-j{os.cpu_count()}",  # colcon's own choice waits while the machine is busy
     )
     return base / "install" / "codesign"
 
