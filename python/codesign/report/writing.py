@@ -83,10 +83,13 @@ def compute_details(study: Any, run: ReportData) -> ReportData:
     def compute(asked: tuple[dict[str, float], str | None]) -> Evaluation | None:
         try:
             detail = compute_detail(study, *asked)
-            save_detail(run.directory / FOLDER, detail)
-        except (CodesignError, OSError) as error:
+        except CodesignError as error:
             logger.warning("no details of design %s: %s", asked[0], error)
             return None
+        try:
+            save_detail(run.directory / FOLDER, detail)
+        except OSError as error:
+            logger.warning("details of design %s are not kept: %s", asked[0], error)
         return detail.evaluation
 
     with ThreadPoolExecutor(len(wanted)) as pool:  # a handful; the native chain releases the GIL
