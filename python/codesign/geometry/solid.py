@@ -11,7 +11,7 @@ from codesign.errors import GeometryError
 from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Difference, Intersection, Moved, Shape, Union
 from codesign.geometry.tessellate import Indices, tessellate
-from codesign.geometry.tidy import tidy
+from codesign.geometry.tidy import tidy, without_unused
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,9 +72,8 @@ def build_solid(shape: Shape, resolution: Resolution, genus: int | None = None) 
     mesh = body.to_mesh64()
     merge = np.arange(len(mesh.vert_properties))
     merge[mesh.merge_from_vert] = mesh.merge_to_vert
-    used, triangles = np.unique(merge[mesh.tri_verts], return_inverse=True)
-    points = np.array(mesh.vert_properties[used, :3], dtype=np.float64)
-    return Solid(points, triangles.reshape(-1, 3), np.array(mesh.face_id, dtype=np.int64), tuple(evaluator.face_names))
+    points, triangles = without_unused(mesh.vert_properties[:, :3].astype(np.float64), merge[mesh.tri_verts])
+    return Solid(points, triangles, np.array(mesh.face_id, dtype=np.int64), tuple(evaluator.face_names))
 
 
 class _Evaluator:

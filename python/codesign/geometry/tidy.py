@@ -31,6 +31,14 @@ def tidy(points: Vector, triangles: Indices, face: Indices) -> tuple[Vector, Ind
     return surface.result()
 
 
+def without_unused(points: Vector, triangles: Indices) -> tuple[Vector, Indices]:
+    """The points that triangles use, in their order, and the triangles numbered accordingly."""
+    used = np.zeros(len(points), dtype=bool)
+    used[triangles] = True
+    number = np.cumsum(used) - 1
+    return points[used], number[triangles]
+
+
 class _Surface:
     """A surface under repair; removed triangles are marked, points that nothing uses are dropped at the end."""
 
@@ -126,5 +134,4 @@ class _Surface:
 
     def result(self) -> tuple[Vector, Indices, Indices]:
         """Points in use, triangles and faces."""
-        used, index = np.unique(self.triangles[self.alive], return_inverse=True)
-        return self.points[used], index.reshape(-1, 3).astype(np.int64), self.face[self.alive]
+        return *without_unused(self.points, self.triangles[self.alive]), self.face[self.alive]
