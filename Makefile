@@ -36,6 +36,7 @@ $(VENV)/runtime.stamp: pyproject.toml $(CXX_SOURCES) | $(VENV)/system.stamp
 
 $(VENV)/test.stamp: apt-packages-test.txt $(VENV)/runtime.stamp pyproject.toml
 	scripts/install_system_packages apt-packages-test.txt
+	$(PIP) install --quiet 'setuptools>=70.1' # that of Python 3.11's venv makes no wheels of packages that come as source
 	$(PIP) install --quiet --no-build-isolation --editable '.[view,cluster,analysis,test]'
 	@touch $@
 

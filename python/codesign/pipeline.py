@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import time
 from collections.abc import Callable, Mapping
@@ -70,24 +69,26 @@ def _evaluate(
     config = study.configured(design)
     settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory))
     parts = build_parts(study, design, config)
+    stress = {name: stress_settings(config, name) for name in parts}
+    keys = {name: _part_key(study, part, stress[name]) for name, part in parts.items()}
     known: dict[str, dict[str, Any]] = {}
     if cache is not None:
-        found = {name: cache.get(_part_key(study, part)) for name, part in parts.items()}
+        found = {name: cache.get(key) for name, key in keys.items()}
         known = {name: document for name, document in found.items() if document is not None}
     masses = {name: _mass(known[name]) if name in known else part.mass_properties() for name, part in parts.items()}
     robot = _assemble(study, config, parts, masses)
-    cases = {name: part_case(part, stress_settings(config, name)) for name, part in parts.items() if name not in known}
+    cases = {name: part_case(part, stress[name]) for name, part in parts.items() if name not in known}
     built = time.perf_counter()
     result = _core.evaluate(list(cases.values()), robot.to_text(), settings)
     documents: dict[str, dict[str, Any]] = {}
-    for name, part in parts.items():
+    for name in parts:
         if name in known:
             documents[name] = known[name]
             continue
         analysis = result.parts[list(cases).index(name)]
         documents[name] = part_document(masses[name], analysis)
         if cache is not None:
-            cache.put(_part_key(study, part), documents[name])
+            cache.put(keys[name], documents[name])
     flight = result.flight
     families = objective_families(flight)
     clearances = _clearances(config, parts, robot, flight)
@@ -234,10 +235,9 @@ def flight_document(trajectory: str, log: dyn.FlightLog, seconds: float) -> dict
     return document
 
 
-def _part_key(study: Study, part: Part) -> str:
-    """Cache key of a part's numbers: everything that decides a result, and the part's own parameters."""
-    parameters = json.dumps(part.parameters, sort_keys=True)
-    return f"{study.hash}/{part.name}/{hashlib.sha256(parameters.encode()).hexdigest()[:24]}"
+def _part_key(study: Study, part: Part, settings: StressSettings) -> str:
+    """Cache key of a part's numbers: the code, every value of the part (`repr` is exact), how it is analysed."""
+    return f"{study.code_hash}/{part.name}/{hashlib.sha256(repr((part, settings)).encode()).hexdigest()[:24]}"
 
 
 def _mass(document: Mapping[str, Any]) -> Inertial:

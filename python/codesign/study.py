@@ -39,6 +39,10 @@ if TYPE_CHECKING:
 
 STUDIES = Path(__file__).parent / "studies"
 PACKAGE = Path(__file__).parent
+DECIDING_MODULES = (
+    "analysis", "config", "fem_model", "flight_setup", "inertial", "interference", "pipeline", "robot", "study",
+    "transforms", "units", "urdf",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,8 @@ class Study:
     """Everything that defines a study. Immutable; `load_study` makes and checks it.
 
     source: the name or path it was loaded from (worker processes load it again from there).
-    raw: the parsed TOML, on which design variables with `sets` act. hash: of all that decides a result.
+    raw: the parsed TOML, on which design variables with `sets` act. hash: of all that decides a result. code_hash: of
+    the engine and the parts' sources, which with a part's own values and settings decide that part's numbers.
     """
 
     source: str
@@ -57,6 +62,7 @@ class Study:
     part_classes: dict[str, type[Part]]
     base_robot: RobotDescription
     hash: str
+    code_hash: str
 
     @property
     def name(self) -> str:
@@ -161,6 +167,7 @@ def load_study(source: str | Path = "ironcub") -> Study:
         raise StudyError(f"{path}: not valid TOML: {error}") from error
     config = _convert(raw, path)
     part_classes = {part.name: _part_class(part, path) for part in config.parts}
+    code = _code_hash(part_classes)
     _check(config, part_classes, path)
     space = DesignSpace(tuple(Variable(n, v.minimum, v.maximum, v.step, v.unit) for n, v in config.variables.items()))
     study = Study(
@@ -171,7 +178,8 @@ def load_study(source: str | Path = "ironcub") -> Study:
         space=space,
         part_classes=part_classes,
         base_robot=RobotDescription.load(path.parent / config.robot.urdf),
-        hash=_study_hash(raw, path, part_classes),
+        hash=_study_hash(raw, path, code),
+        code_hash=code,
     )
     for corner in ([0] * len(space.variables), [levels - 1 for levels in space.levels]):
         study.configured(space.from_indices(corner))  # a number that a variable sets must exist and stay valid
@@ -351,11 +359,18 @@ def _replace_number(raw: RawStudy, dotted: str, value: float, path: Path) -> Non
     node[index] = value
 
 
-def _study_hash(raw: RawStudy, path: Path, part_classes: Mapping[str, type[Part]]) -> str:
-    """Hash of everything that decides a result: deciding sections, robot, part sources, engine."""
+def _study_hash(raw: RawStudy, path: Path, code: str) -> str:
+    """Hash of everything that decides a result: deciding sections, robot, code."""
     digest = hashlib.sha256()
     digest.update(json.dumps({k: raw.get(k) for k in DECIDING_SECTIONS}, sort_keys=True).encode())
     digest.update((path.parent / raw["robot"]["urdf"]).read_bytes())
+    digest.update(code.encode())
+    return digest.hexdigest()[:16]
+
+
+def _code_hash(part_classes: Mapping[str, type[Part]]) -> str:
+    """Hash of the sources of the parts and of the engine."""
+    digest = hashlib.sha256()
     for module in sorted({cls.__module__ for cls in part_classes.values()}):
         digest.update(Path(str(sys.modules[module].__file__)).read_bytes())
     digest.update(engine_hash().encode())
@@ -364,14 +379,11 @@ def _study_hash(raw: RawStudy, path: Path, part_classes: Mapping[str, type[Part]
 
 @functools.cache
 def engine_hash() -> str:
-    """Hash of the code that turns a design into numbers: compiled core, geometry, robot, analysis, pipeline."""
+    """Hash of the code that turns a design into numbers: compiled core, geometry, DECIDING_MODULES."""
     from codesign import _core
 
     files = [Path(str(_core.__file__)), *sorted((PACKAGE / "geometry").glob("*.py"))]
-    files += [
-        PACKAGE / f"{n}.py"
-        for n in ("analysis", "flight_setup", "inertial", "pipeline", "robot", "transforms", "units", "urdf")
-    ]
+    files += [PACKAGE / f"{name}.py" for name in DECIDING_MODULES]
     digest = hashlib.sha256()
     for file in files:
         digest.update(file.name.encode() + file.read_bytes())

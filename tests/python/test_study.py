@@ -4,9 +4,22 @@ import tomllib
 
 import pytest
 
+from codesign.cache import MemoryCache
 from codesign.errors import StudyError
 from codesign.study import STUDIES, load_study, new_study, shipped_studies
 from codesign.urdf_table import generated_urdf
+
+BASELINE = "# The design that reports compare with.\n[baseline]"
+
+
+def variable(name: str, minimum: int, maximum: int, step: int, sets: str, baseline: int) -> str:
+    """Text that puts a design variable which sets a number of the study before the baseline."""
+    bounds = f"min = {minimum}\nmax = {maximum}\nstep = {step}"
+    return f'[variables.{name}]\n{bounds}\nsets = ["{sets}"]\n\n[baseline]\n{name} = {baseline}'
+
+
+GAIN = variable("gain", 20, 80, 5, "flight.gains.attitude_proportional", 50)
+DENSITY = variable("density", 2000, 4000, 1000, "materials.ergal.density_kg_m3", 3000)
 
 
 @pytest.fixture
@@ -85,14 +98,31 @@ def test_hash_follows_the_part_source(copy, tmp_path):
 
 
 def test_a_number_of_the_study_can_be_a_design_variable(copy):
-    study = copy(
-        "# The design that reports compare with.\n[baseline]",
-        "[variables.gain]\nmin = 20\nmax = 80\nstep = 5\n"
-        'sets = ["flight.gains.attitude_proportional"]\n\n[baseline]\ngain = 50',
-    )
+    study = copy(BASELINE, GAIN)
     assert study.config.flight.gains.attitude_proportional == 50.0
     configured = study.configured({"reach": 200, "height": 30, "gain": 35})
     assert configured.flight.gains.attitude_proportional == 35.0
+
+
+@pytest.mark.parametrize(("text", "values", "shared"), [(GAIN, (35, 50), True), (DENSITY, (2000, 4000), False)])
+def test_a_part_is_taken_from_the_cache_only_if_nothing_of_its_own_changed(copy, text, values, shared):
+    study = copy(BASELINE, text)
+    name = study.space.variables[-1].name
+    cache = MemoryCache()
+    first, second = (study.evaluate({"reach": 200, "height": 30, name: value}, cache=cache) for value in values)
+    assert first.status != "failed", first.reason
+    assert (first.parts == second.parts) is shared
+    if not shared:
+        assert second.parts["strut"]["mass"] == pytest.approx(2.0 * first.parts["strut"]["mass"], rel=1e-12)
+
+
+def test_parts_of_studies_that_fly_differently_are_the_same_parts(copy):
+    first = copy("attitude_proportional = ", "attitude_proportional = 0.5e1 # ")
+    cache = MemoryCache()
+    parts = first.evaluate({"reach": 200, "height": 30}, cache=cache).parts
+    second = copy("attitude_proportional = 0.5e1", "attitude_proportional = 0.6e1")
+    assert second.hash != first.hash
+    assert second.evaluate({"reach": 200, "height": 30}, cache=cache).parts == parts  # times included: not done again
 
 
 def test_a_variable_that_sets_nothing_real_is_refused(copy):
