@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Any
 
 import manifold3d
 import msgspec
@@ -28,15 +28,6 @@ from codesign.urdf import RobotDescription
 Indices = NDArray[np.intp]
 Pieces = Mapping[str, Sequence[Matrix]]  # link -> points (n, 3) of each convex piece, link axes [m]
 CYLINDER_SIDES = 32  # inscribed: up to 0.5 % of the radius inside the true cylinder or sphere
-
-
-class Surface(Protocol):
-    """A closed surface: points (n, 3), triangles (m, 3)."""
-
-    @property
-    def points(self) -> Matrix: ...  # noqa: D102
-    @property
-    def triangles(self) -> NDArray[Any]: ...  # noqa: D102
 
 
 class PlumeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -188,19 +179,18 @@ def check_interference(
 def flown_interference(
     robot: RobotDescription,
     settings: InterferenceSettings,
-    parts: Mapping[str, tuple[Sequence[PartPlacement], Surface]],
+    parts: Mapping[str, tuple[Sequence[PartPlacement], Sequence[Matrix]]],
     joints: Sequence[str],
     history: Matrix,
     step: float,
 ) -> dict[str, Any]:
     """Clearances of a flown design for JSON, SI units: both minima, and every pair and plume below the limit.
 
-    robot: with the design's parts in it. parts: name -> its places and its surface, part axes [m].
+    robot: with the design's parts in it. parts: name -> its places and its convex pieces, part axes [m].
     joints, history: joint names, and positions (n, joints) [rad] at times 0, step, 2 step … [s].
     """
     pieces: dict[str, list[Matrix]] = {}
-    for places, surface in parts.values():
-        slices = convex_pieces(surface.points, surface.triangles, settings.slices)
+    for places, slices in parts.values():
         pieces |= {place.link: [place_points(place, points) for points in slices] for place in places}
     chosen = telling_samples(history, settings.postures)
     postures = {name: history[chosen, k] for k, name in enumerate(joints)}
@@ -253,16 +243,20 @@ def _clearances(
     shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix], pairs: Sequence[tuple[str, str]], limit: float
 ) -> list[Clearance]:
     """Smallest signed distance of each pair over all postures, where it is below `limit`; nearest first."""
-    whole = {name: _sphere(np.vstack(list(pieces))) for name, pieces in shapes.items()}
-    pairs = [(a, b) for a, b in pairs if _sphere_gaps([whole[a]], [whole[b]], _relative(poses, a, b)).min() < limit]
-    spheres = {name: [_sphere(piece) for piece in pieces] for name, pieces in shapes.items()}
-    found = (_clearance(shapes, spheres, a, b, _relative(poses, a, b), limit) for a, b in pairs)
+    if not pairs:
+        return []
+    whole = {name: _placed_spheres([np.vstack(list(pieces))], poses[name]) for name, pieces in shapes.items()}
+    first, second = (_Spheres.joined([whole[name] for name in names]) for names in zip(*pairs, strict=True))
+    near = np.flatnonzero(first.gaps(second).min(axis=1) < limit).tolist()
+    names = {name for k in near for name in pairs[k]}
+    spheres = {name: _placed_spheres(shapes[name], poses[name]) for name in names}
+    found = (_clearance(shapes, spheres, *pairs[k], _relative(poses, *pairs[k]), limit) for k in near)
     return sorted((c for c in found if c.distance < limit), key=lambda clearance: clearance.distance)
 
 
 def _clearance(
     shapes: Mapping[str, Sequence[Matrix]],
-    spheres: Mapping[str, Sequence[tuple[Matrix, float]]],
+    spheres: Mapping[str, _Spheres],
     a: str,
     b: str,
     a_T_b: Matrix,
@@ -270,7 +264,7 @@ def _clearance(
 ) -> Clearance:
     """Smallest signed distance of one pair of links over postures (n, 4, 4); `limit` if it is not below."""
     hulls = [*shapes[a], *shapes[b]]
-    bound = _sphere_gaps(spheres[a], spheres[b], a_T_b)  # (pieces of a, pieces of b, postures)
+    bound = spheres[a].between(spheres[b])[:, :, : len(a_T_b)]  # (pieces of a, pieces of b, postures)
     nearest = Clearance(a, b, limit, 0)
     likely = bound <= bound.min(axis=(0, 1), keepdims=True)  # their distances rule out most of the others
     for chosen in (likely, ~likely):
@@ -290,21 +284,34 @@ def _relative(poses: Mapping[str, Matrix], a: str, b: str) -> Matrix:
     return a_T_b[:1] if rigid else a_T_b
 
 
-def _sphere(points: Matrix) -> tuple[Matrix, float]:
-    """Centre (3,) and radius of a sphere around points (n, 3)."""
-    center = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    return center, float(np.linalg.norm(points - center, axis=1).max())
+@dataclass(frozen=True, slots=True)
+class _Spheres:
+    """Spheres around solids: centre (k, postures, 3) and radius (k,) [m]; gaps between them bound distances below."""
+
+    centre: Matrix
+    radius: Matrix
+
+    @staticmethod
+    def joined(parts: Sequence[_Spheres]) -> _Spheres:
+        return _Spheres(np.concatenate([p.centre for p in parts]), np.concatenate([p.radius for p in parts]))
+
+    def gaps(self, other: _Spheres) -> Matrix:
+        """(k, postures) from each sphere to the other one of the same number."""
+        apart = np.linalg.norm(self.centre - other.centre, axis=-1)
+        return np.asarray(apart - (self.radius + other.radius)[:, None])
+
+    def between(self, other: _Spheres) -> Matrix:
+        """(k, l, postures) from each sphere to each of the others."""
+        apart = np.linalg.norm(self.centre[:, None] - other.centre[None], axis=-1)
+        return np.asarray(apart - (self.radius[:, None] + other.radius)[..., None])
 
 
-def _sphere_gaps(
-    first: Sequence[tuple[Matrix, float]], second: Sequence[tuple[Matrix, float]], a_T_b: Matrix
-) -> Matrix:
-    """Distances (first, second, postures) between spheres: lower bounds of the distances of what is inside them."""
-    a, b = (np.array([center for center, _ in spheres]) for spheres in (first, second))
-    ra, rb = (np.array([radius for _, radius in spheres]) for spheres in (first, second))
-    placed = b @ np.swapaxes(a_T_b[:, :3, :3], 1, 2) + a_T_b[:, None, :3, 3]  # (postures, second, 3)
-    apart = np.linalg.norm(placed[None] - a[:, None, None], axis=3)  # (first, postures, second)
-    return np.asarray(np.swapaxes(apart, 1, 2) - (ra[:, None] + rb)[..., None])
+def _placed_spheres(pieces: Sequence[Matrix], root_T_link: Matrix) -> _Spheres:
+    """A sphere around the points (n, 3) of each piece, in all postures (n, 4, 4)."""
+    center = np.array([0.5 * (points.min(axis=0) + points.max(axis=0)) for points in pieces])
+    radius = [np.linalg.norm(points - c, axis=1).max() for points, c in zip(pieces, center, strict=True)]
+    placed = center @ np.swapaxes(root_T_link[:, :3, :3], 1, 2) + root_T_link[:, None, :3, 3]  # (postures, k, 3)
+    return _Spheres(np.swapaxes(placed, 0, 1), np.array(radius))
 
 
 def _with_angle(found: Clearance, shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix]) -> Clearance:

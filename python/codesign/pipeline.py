@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import math
 import time
@@ -22,9 +23,10 @@ from codesign.fem import Material
 from codesign.flight_setup import find_trajectory, flight_settings, joint_names
 from codesign.geometry.part import Part
 from codesign.inertial import Inertial
-from codesign.interference import flown_interference
+from codesign.interference import convex_pieces, flown_interference
 from codesign.provenance import provenance
 from codesign.robot import PartBody, assemble
+from codesign.transforms import Matrix
 from codesign.units import GIGA, MEGA, MILLIMETRE
 from codesign.urdf import RobotDescription
 
@@ -261,10 +263,18 @@ def _clearances(
     history = flight.joint_positions[np.isfinite(flight.joint_positions).all(axis=1)]
     if config.interference is None or not len(history):
         return {}
-    placed = {part.name: (part.placements, parts[part.name].surface(CLEARANCE_SEGMENTS)) for part in config.parts}
+    slices = config.interference.slices
+    placed = {part.name: (part.placements, _convex_pieces(parts[part.name], slices)) for part in config.parts}
     return flown_interference(
         robot, config.interference, placed, joint_names(config.flight), history, config.flight.step_s
     )
+
+
+@functools.lru_cache(maxsize=64)
+def _convex_pieces(part: Part, slices: int) -> tuple[Matrix, ...]:
+    """Convex pieces of a part, part axes [m]; kept, since designs share parts."""
+    surface = part.surface(CLEARANCE_SEGMENTS)
+    return tuple(convex_pieces(surface.points, surface.triangles, slices))
 
 
 def _short_clearances(config: StudyConfig, clearances: Mapping[str, Any]) -> dict[str, tuple[float, float]]:

@@ -222,10 +222,10 @@ def test_a_flown_part_is_reported_with_the_time_of_its_nearest_approach(swing):
         points=np.array([[x, y, z] for x in (0.0, 1.0) for y in (-0.01, 0.01) for z in (-0.01, 0.01)]),
         triangles=ConvexHull(np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])).simplices,
     )
-    surface.triangles = outward(surface.points, surface.triangles)
+    pieces = convex_pieces(surface.points, outward(surface.points, surface.triangles), 3)
     history = np.deg2rad(np.r_[np.linspace(0, 30, 100), np.linspace(30, 0, 100)])[:, None]
-    settings = InterferenceSettings(bodies=("bar",), report_below_mm=2000, postures=5, slices=3)
-    report = flown_interference(swing, settings, {"bar": ([PartPlacement("bar")], surface)}, ["turn"], history, 0.01)
+    settings = InterferenceSettings(bodies=("bar",), report_below_mm=2000, postures=5)
+    report = flown_interference(swing, settings, {"bar": ([PartPlacement("bar")], pieces)}, ["turn"], history, 0.01)
     nearest = report["bodies"][0]
     assert nearest["links"] == ["base", "bar"]
     assert nearest["time"] == pytest.approx(0.99)
