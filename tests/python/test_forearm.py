@@ -1,9 +1,12 @@
 """The forearm support: closed forms, published mass properties, named faces, refusals."""
 
+import math
+
 import numpy as np
 import pytest
 
 from codesign.errors import GeometryError
+from codesign.geometry.shape import polar
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
 DISTAL_AREA_MM2 = {80: 3622.94, 88: 4010.20, 100: 4468.28, 108: 4661.2}
@@ -32,8 +35,20 @@ def test_mass_properties_of_the_published_optimum() -> None:
 
 
 def test_fillets_add_what_their_cross_sections_say() -> None:
-    sharp, round_ = ForearmJetSupport.as_published(88, 50), ForearmJetSupport(88, 50)
+    sharp, round_ = ForearmJetSupport.as_published(88, 50), ForearmJetSupport(88, 50, spot_face=0.0)
     assert (round_.mass_properties().volume - sharp.mass_properties().volume) * 1e9 == pytest.approx(101.0, abs=0.5)
+
+
+def test_heads_of_the_flange_screws_find_a_flat_seat() -> None:
+    """No material lies in front of the flange within a head's radius of the screws; without spot faces some does."""
+    y, z = np.array(polar(11.7, 135.0, -135.0)).T
+    for part, free in ((ForearmJetSupport(88, 50), True), (ForearmJetSupport(88, 50, spot_face=0.0), False)):
+        points = part.solid().points
+        inside = (points[:, 0] < -18.0 - 1e-6) & (points[:, 0] > -23.0 + 1e-6)
+        clearance = np.hypot(points[:, None, 1] - 15.0 - y, points[:, None, 2] - z).min(axis=1)
+        assert bool(clearance[inside].min() > 2.75 * math.cos(math.pi / 24) - 1e-6) is free
+    with pytest.raises(GeometryError, match=r"spot_face = 3 mm is above its limit 2\.75"):
+        ForearmJetSupport(88, 50, spot_face=3.0)
 
 
 @pytest.mark.parametrize("geometry", ["full", "simplified"])

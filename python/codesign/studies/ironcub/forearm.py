@@ -49,7 +49,8 @@ class ForearmJetSupport(Part):
     """Left forearm support with the ring's axis `offset` below the rod and a rod of `length`.
 
     fillet, relief_fillet: radii at the rod's two ends and in the corners of the screw-head relief; 0 for the sharp
-    corners of the published part (`as_published`).
+    corners of the published part (`as_published`). spot_face: radius of the seats that the heads of the flange's screws
+    get in those roundings; 0 for none. The relief just clears the heads of M3 cap screws, 2.75.
     """
 
     offset: float = parameter("mm", minimum=0.0, maximum=200.0)
@@ -59,11 +60,12 @@ class ForearmJetSupport(Part):
     density: float = 4410.0  # titanium alloy, as in the published masses
     fillet: float = 2.0
     relief_fillet: float = 1.5
+    spot_face: float = 2.75
 
     @classmethod
     def as_published(cls, offset: float, length: float) -> ForearmJetSupport:
         """The part of the published data base: sharp corners at the rod."""
-        return cls(offset, length, fillet=0.0, relief_fillet=0.0)
+        return cls(offset, length, fillet=0.0, relief_fillet=0.0, spot_face=0.0)
 
     def check(self) -> None:
         """Walls between bore and spigot, and of the neck between hub and ring."""
@@ -75,6 +77,9 @@ class ForearmJetSupport(Part):
         relief = ROD_X - RELIEF_X
         self.limit("fillet", 0.0, FLANGE_HALF_WIDTH - ROD_RADIUS - 0.2, because="it must end on the flange")
         self.limit("relief_fillet", 0.0, 0.5 * relief, because="the relief has two of them")
+        y, z = FLANGE_HOLES[0][1][0]
+        to_rod = math.hypot(y - RELIEF_FLOOR, z - math.sqrt(ROD_RADIUS**2 - RELIEF_FLOOR**2))
+        self.limit("spot_face", 0.0, to_rod, because="a wider one would cut into the rod")
         self.limit("length", minimum=relief + self.fillet + MINIMUM_WALL, because="relief and fillet beside each other")
 
     @property
@@ -91,16 +96,23 @@ class ForearmJetSupport(Part):
 
     def shape(self) -> Shape:
         """The part as it is made."""
-        return self._build(stub=True, spigot=True)
+        return self._build()
 
     def fem_shape(self, geometry: str = "simplified") -> Shape:
-        """The part as it is analysed: "full", or "simplified" without stub and spigot; faces `mount` and `seat`."""
+        """The part as it is analysed: "full", or "simplified" without stub, spigot and spot faces.
+
+        Both have the faces `mount` and `seat`.
+        """
         if geometry not in ("full", "simplified"):
             raise ValueError(f"geometry = {geometry!r}: must be 'full' or 'simplified'")
-        return self._build(stub=geometry == "full", spigot=geometry == "full")
+        whole = geometry == "full"
+        return self._build(stub=whole, spigot=whole, spot_faces=whole)
 
-    def _build(self, stub: bool, spigot: bool) -> Shape:
+    def _build(self, stub: bool = True, spigot: bool = True, spot_faces: bool = True) -> Shape:
         turned = self._turned(stub, spigot) - self._relief()
+        if spot_faces and self.spot_face > 0.0:
+            _, screws = FLANGE_HOLES[0]
+            turned = turned - at_points(cylinder(self.spot_face, RELIEF_X, ROD_X), screws).placed(ACROSS)
         if stub:
             flat = box((-8.0, 6.856, -4.0), (7.0, 10.0, 4.0), y0="mount", z0="mount", z1="mount").moved(*AXIS)
             turned = turned - flat - flat.rotated("x", 180.0, about=AXIS)
