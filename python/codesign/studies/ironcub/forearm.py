@@ -26,6 +26,7 @@ from codesign.geometry.shape import (
     box,
     cylinder,
     polar,
+    stepped_hole,
     union,
 )
 from codesign.units import MILLIMETRE
@@ -39,7 +40,8 @@ FLANGE_RADIUS, FLANGE_HALF_WIDTH, FLANGE_FOOT = 18.0, 11.45, -15.0
 STUB_RADIUS, GROOVE_RADIUS = math.sqrt(63.0), 5.937
 RELIEF_FLOOR = -6.0
 HUB_RADIUS, RING_RADIUS, BORE_RADIUS, BLEND_RADIUS = 27.5, 65.9, 60.9, 25.0
-FLANGE_HOLES = ((2.0, polar(11.7, 135.0, -135.0)), (1.25, polar(12.5, 160.0, -160.0)))
+SCREW_HOLE = 2.0  # radius
+FLANGE_HOLES = ((SCREW_HOLE, polar(11.7, 135.0, -135.0)), (1.25, polar(12.5, 160.0, -160.0)))
 MINIMUM_WALL = 2.0
 NOZZLE_REACH = 146.1  # from the distal face to the nozzle's exit
 
@@ -110,9 +112,6 @@ class ForearmJetSupport(Part):
 
     def _build(self, stub: bool = True, spigot: bool = True, spot_faces: bool = True) -> Shape:
         turned = self._turned(stub, spigot) - self._relief()
-        if spot_faces and self.spot_face > 0.0:
-            _, screws = FLANGE_HOLES[0]
-            turned = turned - at_points(cylinder(self.spot_face, RELIEF_X, ROD_X), screws).placed(ACROSS)
         if stub:
             flat = box((-8.0, 6.856, -4.0), (7.0, 10.0, 4.0), y0="mount", z0="mount", z1="mount").moved(*AXIS)
             turned = turned - flat - flat.rotated("x", 180.0, about=AXIS)
@@ -120,6 +119,8 @@ class ForearmJetSupport(Part):
         shape = union(turned, self._flange(), clamp)
         for radius, centres in FLANGE_HOLES:
             hole = cylinder(radius, RELIEF_X, -5.0)
+            if radius == SCREW_HOLE and spot_faces and self.spot_face > radius:
+                hole = stepped_hole((self.spot_face, RELIEF_X, ROD_X), (radius, ROD_X, -5.0))
             shape = shape - at_points(hole, centres).placed(ACROSS)
         return shape
 
