@@ -49,9 +49,20 @@ const layout = (more = {}) => ({
   paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)', font: font(), margin: {l: 66, r: 16, t: 10, b: 52}, showlegend: false,
   hoverlabel: {bgcolor: colour('bg'), bordercolor: colour('strong'), font: {...font(), color: colour('ink')}, align: 'left'}, ...more,
 });
-/** Draws a chart when its place comes near the screen, or when the page is printed. */
+/** Plotly, which takes a second or two to start: on first use, so that the page can be read before its charts stand. */
+function plotly() {
+  if (!window.Plotly) {
+    const script = document.createElement('script');
+    script.textContent = element('plotly').textContent;
+    document.head.append(script);
+  }
+  return window.Plotly;
+}
+
+/** Draws a chart when its place comes near the screen (once what is there has been painted), or when the page is printed. */
 const waiting = new Map();
-const watcher = new IntersectionObserver(entries => entries.filter(e => e.isIntersecting).forEach(e => drawNow(e.target)), {rootMargin: '300px'});
+const painted = act => requestAnimationFrame(() => setTimeout(act));
+const watcher = new IntersectionObserver(entries => entries.filter(e => e.isIntersecting).forEach(e => painted(() => drawNow(e.target))), {rootMargin: '300px'});
 function whenVisible(node, draw) {
   if (!node) return;
   waiting.set(node, draw);

@@ -44,7 +44,7 @@ function drawParts(i) {
     const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, coloured by stress; drag to turn"></div>` : '';
     return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl></article>`;
   });
-  document.querySelectorAll('.solid').forEach(node => Plotly.purge(node));
+  document.querySelectorAll('.solid').forEach(node => window.Plotly?.purge(node));
   box.innerHTML = cards.join('') || '<p class="absent">No part was built for this design.</p>';
   element('parts-absent').innerHTML = detail || !cards.join('') ? '' : absent('The 3-D view with stress and the flight histories are');
   report.parts.forEach((part, k) => whenVisible(element(`solid-${k}`), node => drawSolid(node, detail.parts[part.key])));
@@ -77,7 +77,7 @@ function drawSolid(node, solid) {
     solid.decoded = {x: coordinate(0), y: coordinate(1), z: coordinate(2), i: corner(0), j: corner(1), k: corner(2), intensity: Float32Array.from(stress, s => s / 65535 * solid.highest * 1e-6)};
   }
   const hidden = {visible: false, showspikes: false};
-  Plotly.newPlot(node, [{
+  plotly().newPlot(node, [{
     type: 'mesh3d', ...solid.decoded, colorscale: STRESS_SCALE, cmin: 0, cmax: solid.highest * 1e-6, flatshading: true, hovertemplate: '%{intensity:.2f} MPa<extra></extra>',
     lighting: {ambient: 0.55, diffuse: 0.75, specular: 0.05, roughness: 0.8, fresnel: 0}, lightposition: {x: 2000, y: -4000, z: 9000},
     colorbar: {title: {text: 'MPa', side: 'top', font: font()}, thickness: 9, len: 0.7, x: 0.98, xanchor: 'right', outlinewidth: 0, tickfont: font(), ticklen: 0, nticks: 6},
@@ -91,7 +91,7 @@ function drawFlight(i) {
   if (!box) return;
   element('flight-name').textContent = name(d);
   const flight = report.details[d.detail]?.flight, reference = original && report.details[original.detail]?.flight;
-  box.querySelectorAll('.history > div').forEach(node => Plotly.purge(node));
+  box.querySelectorAll('.history > div').forEach(node => window.Plotly?.purge(node));
   const facts = report.flight_facts.map((f, k) => !known(d.fl[k]) ? '' : `<div><dt>${escaped(f.label)}</dt><dd>${withUnit(number(d.fl[k] * f.factor, 3), f.unit)}</dd></div>`);
   element('flight-facts').innerHTML = facts.join('');
   if (!flight) {
@@ -117,7 +117,7 @@ function drawHistory(node, flight, chart, reference, k) {
     hovertemplate: `%{y:.3g} ${alone ? 'this design' : escaped(series.label)}<extra></extra>`,
   }));
   const legend = {orientation: 'h', x: 1, xanchor: 'right', y: 1.02, yanchor: 'bottom', font: font(), bgcolor: 'rgba(0,0,0,0)'};
-  Plotly.newPlot(node, traces, layout({
+  plotly().newPlot(node, traces, layout({
     margin: {l: 48, r: 8, t: traces.length > 1 ? 24 : 8, b: 38}, xaxis: axis('Time (s)', {title: {text: 'Time (s)', font: font(), standoff: 4}}),
     yaxis: axis('', {rangemode: chart.zero ? 'tozero' : 'normal'}), showlegend: traces.length > 1, legend, hovermode: 'x unified',
   }), settings);

@@ -42,7 +42,7 @@ function drawFront() {
   const plot = element('front');
   if (!plot) return;
   const [x, y] = [report.objectives[front.x], report.objectives[front.y]];
-  Plotly.react(plot, frontTraces(), layout({
+  plotly().react(plot, frontTraces(), layout({
     xaxis: axis(x.title, {range: x.view}), yaxis: axis(y.title, {range: y.view}), hovermode: 'closest', dragmode: 'zoom', hoverdistance: 24,
   }), settings);
   if (!front.ready) {
@@ -59,7 +59,7 @@ function ring(trace, i) {
   const plot = element('front');
   if (!plot || !front.ready) return;
   const shown = known(i) && known(designs[i].f[front.x]) && known(designs[i].f[front.y]);
-  Plotly.restyle(plot, {x: [shown ? [designs[i].f[front.x]] : []], y: [shown ? [designs[i].f[front.y]] : []]}, [trace]);
+  plotly().restyle(plot, {x: [shown ? [designs[i].f[front.x]] : []], y: [shown ? [designs[i].f[front.y]] : []]}, [trace]);
 }
 
 function frontControls() {

@@ -41,7 +41,7 @@ function remembered() { try { return localStorage.getItem('codesign-theme'); } c
 
 function paint(theme) {
   document.documentElement.dataset.theme = theme;
-  drawFront();
+  painted(drawFront);
   whenVisible(element('progress'), drawProgress);
   whenVisible(element('validation-chart'), drawValidation);
   if (known(state.selected)) { drawParts(state.selected); drawFlight(state.selected); }
@@ -60,7 +60,7 @@ element('theme').addEventListener('click', () => {
   paint(theme);
 });
 system.addEventListener('change', () => { if (!remembered()) paint(system.matches ? 'dark' : 'light'); });
-window.addEventListener('beforeprint', () => { paint('light'); [...waiting.keys()].forEach(drawNow); });
+window.addEventListener('beforeprint', () => { paint('light'); drawFront(); [...waiting.keys()].forEach(drawNow); });
 window.addEventListener('afterprint', () => paint(remembered() || (system.matches ? 'dark' : 'light')));
 
 if (!FILTERS.front || !designs.some(FILTERS.front)) table.filter = 'all';

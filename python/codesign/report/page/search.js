@@ -3,7 +3,7 @@ function drawProgress() {
   const plot = element('progress');
   if (!plot) return;
   const steps = report.progress;
-  Plotly.react(plot, [{
+  plotly().react(plot, [{
     type: 'scatter', mode: 'lines', x: steps.count, y: steps.volume, line: {color: colour('accent'), width: 2, shape: 'hv'},
     hovertemplate: 'after %{x} designs: %{y:.1%}<extra></extra>',
   }], layout({xaxis: axis('Designs evaluated', {rangemode: 'tozero'}), yaxis: axis('Front found', {tickformat: '.0%', range: [0, 1.04]}), hovermode: 'x'}), settings);
@@ -30,5 +30,5 @@ function drawValidation() {
   const annotations = strips.objectives.map((objective, o) => ({
     text: `<b>${escaped(objective.label)}</b>`, x: o / strips.objectives.length + 0.03, y: 1.02, xref: 'paper', yref: 'paper', xanchor: 'left', yanchor: 'bottom', showarrow: false, font: {...font(), color: colour('ink')},
   }));
-  Plotly.react(plot, traces, layout({...axes, annotations, margin: {l: 30, r: 8, t: 34, b: 60}, showlegend: true, hovermode: 'closest', legend: {orientation: 'h', x: 1, xanchor: 'right', y: 1.02, yanchor: 'bottom', font: font(), bgcolor: 'rgba(0,0,0,0)'}}), settings);
+  plotly().react(plot, traces, layout({...axes, annotations, margin: {l: 30, r: 8, t: 34, b: 60}, showlegend: true, hovermode: 'closest', legend: {orientation: 'h', x: 1, xanchor: 'right', y: 1.02, yanchor: 'bottom', font: font(), bgcolor: 'rgba(0,0,0,0)'}}), settings);
 }
