@@ -86,7 +86,7 @@ def test_gain_in_words_is_the_gain_in_numbers(tmp_path, evaluations):
 def test_page_is_one_file_that_loads_nothing(tmp_path, evaluations):
     synthetic_run.write_run(tmp_path / "run", evaluations)
     text = page_text(tmp_path / "run")
-    markup = re.sub(r"<script>.*?</script>", "", text, flags=re.S)
+    markup = re.sub(r'<script(?: type="text/plain" id="plotly")?>.*?</script>', "", text, flags=re.S)
     assert not re.search(r"""(?:src|href|url)\s*[=(]\s*["']?(?:https?:)?//""", markup)
     assert "default-src 'none'" in markup
     assert len(text) < 15e6
@@ -101,6 +101,17 @@ def test_page_holds_every_design_with_its_stored_numbers(tmp_path, evaluations):
         assert row["x"] == list(evaluation.design.values())
         stored = [evaluation.objectives.get(key) for key in ("momentum", "joint_velocity", "thrust")]
         assert row["f"] == [None if v is None else pytest.approx(v, rel=1e-6) for v in stored]
+
+
+def test_constraints_have_units_and_only_limits_are_judged(tmp_path, evaluations):
+    watched = [replace(e, constraints=e.constraints | {"body_clearance": -0.0025}) for e in evaluations]
+    synthetic_run.write_run(tmp_path / "run", watched)
+    document = embedded(page_text(tmp_path / "run"))
+    shown = {constraint["key"]: constraint for constraint in document["constraints"]}
+    assert shown["safety_factor"]["rule"] == "≥ 10"
+    assert (shown["body_clearance"]["unit"], shown["body_clearance"]["rule"]) == ("mm", "")
+    place = list(shown).index("body_clearance")
+    assert {row["c"][place] for row in document["designs"] if row["id"] is not None} == {-2.5}
 
 
 def test_failed_designs_are_shown_with_their_reasons_and_never_ranked(tmp_path, evaluations):

@@ -14,18 +14,23 @@ from codesign.design import DesignSpace, Variable
 from codesign.evaluation import Evaluation
 from codesign.front import non_dominated
 from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee
+from codesign.units import MILLIMETRE
 
 MOST = 0.93  # of the feasible designs are in view
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number shown to people: its key in an Evaluation, its name in words, its unit, and what it means."""
+    """A number shown to people: its key in an Evaluation, its name in words, its unit, and what it means.
+
+    factor: from the SI value that is stored to `unit`.
+    """
 
     key: str
     label: str
     unit: str = ""
     meaning: str = ""
+    factor: float = 1.0
 
     @property
     def title(self) -> str:
@@ -62,6 +67,13 @@ CONSTRAINTS = {
         "safety_factor", "Safety factor", "", "Yield strength over peak stress of the weakest part."
     ),
     "qp_failures": Quantity("qp_failures", "Controller failures", "", "Control steps without a solution."),
+    "first_frequency": Quantity("first_frequency", "First frequency", "Hz", "Lowest natural frequency of any part."),
+    "body_clearance": Quantity(
+        "body_clearance", "Body clearance", "mm", "Smallest gap beside the parts; below 0 they overlap.", 1 / MILLIMETRE
+    ),
+    "plume_clearance": Quantity(
+        "plume_clearance", "Plume clearance", "mm", "Smallest gap beside the jets; below 0 they hit.", 1 / MILLIMETRE
+    ),
 }
 
 
@@ -101,7 +113,8 @@ class ReportData:
 
     entries: finished designs in the order of evaluation. waiting: designs that were asked for and have no result yet.
     baseline: the design that everything is compared with, None if the study names none or it could not be evaluated.
-    limits: constraint -> (sign, limit), sign ">=" or "<=".   provenance: what made the numbers, for people.
+    limits: constraint -> (sign, limit in SI units), sign ">=" or "<="; the others are only watched.
+    provenance: what made the numbers, for people.
     labels: variable -> name for people.   notes: what a reader must know before trusting the numbers.
     """
 

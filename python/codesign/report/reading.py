@@ -11,6 +11,7 @@ from codesign.evaluation import Evaluation
 from codesign.report.data import Entry, ReportData, objective_quantities, words
 from codesign.report.details import load_details
 from codesign.runs import Run, load_run
+from codesign.units import MILLIMETRE
 
 logger = logging.getLogger(__name__)
 
@@ -40,12 +41,25 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
         baseline=evaluated,
         waiting=run.counts.get("queued", 0) + run.counts.get("running", 0),
         planned=None if run.finished else run.settings.get("evaluations"),
-        limits={"safety_factor": (">=", study.config.constraints.safety_factor_min)} if study is not None else {},
+        limits=_limits(study) if study is not None else {},
         provenance=provenance(run),
         export_command=f"codesign export --study {run.study['source']}",
         labels={name: v.label for name, v in study.config.variables.items()} if study is not None else {},
         notes=_notes(run, study),
     )
+
+
+def _limits(study: Any) -> dict[str, tuple[str, float]]:
+    """What the study demands of its constraints, SI units."""
+    asked = study.config.constraints
+    lowest = {
+        "safety_factor": (asked.safety_factor_min, 1.0),
+        "first_frequency": (asked.first_frequency_min_hz, 1.0),
+        "body_clearance": (asked.body_clearance_min_mm, MILLIMETRE),
+        "plume_clearance": (asked.plume_clearance_min_mm, MILLIMETRE),
+    }
+    limits = {key: (">=", value * unit) for key, (value, unit) in lowest.items() if value is not None}
+    return limits | ({"qp_failures": ("<=", 0.0)} if asked.flight_completed else {})
 
 
 def study_of(directory: Path) -> Any:

@@ -15,16 +15,19 @@ function card(i) {
   });
   const objectives = report.objectives.map((o, k) =>
     `<div class="row"><span>${escaped(o.label)}</span><b>${withUnit(number(d.f[k]), o.unit)}<span class="delta ${sense(change(d, k))}">${percent(change(d, k))}</span></b></div>`);
-  const constraints = report.constraints.map((c, k) => {
-    const verdict = !known(d.c[k]) ? '' : d.g[k] > 0 ? '<span class="bad"> violated</span>' : '<span class="good"> ✓</span>';
-    return `<div class="row"><span>${escaped(c.label)} <small>${escaped(c.rule)}</small></span><b>${number(d.c[k], 3)}${verdict}</b></div>`;
-  });
+  const constraint = (c, k) => {
+    const verdict = !known(d.c[k]) || !c.rule ? '' : d.g[k] > 0 ? '<span class="bad"> violated</span>' : '<span class="good"> ✓</span>';
+    return `<div class="row" title="${escaped(c.meaning)}"><span>${escaped(c.label)} <small>${escaped(c.rule)}</small></span><b>${withUnit(number(d.c[k], 3), c.unit)}${verdict}</b></div>`;
+  };
+  const rows = wanted => report.constraints.map((c, k) => Boolean(c.rule) === wanted && known(d.c[k]) ? constraint(c, k) : '').join('');
+  const [constraints, watched] = [rows(true), rows(false)];
   box.innerHTML = `<header><h2>${name(d)}</h2><span class="step"><button type="button" class="quiet" data-step="-1" aria-label="Previous best compromise" title="Previous best compromise">←</button>` +
     `<button type="button" class="quiet" data-step="1" aria-label="Next best compromise" title="Next best compromise">→</button></span></header>` +
     `<p class="tags">${tags.join('')}</p>${d.reason ? `<p class="reason">${escaped(d.reason)}</p>` : ''}` +
     `<div class="group"><h3>Parameters${original && d !== original ? ' <small>– mark: original</small>' : ''}</h3>${variables.join('')}</div>` +
     (d.f.some(known) ? `<div class="group"><h3>Objectives${original && d !== original ? ', against the original' : ''}</h3>${objectives.join('')}</div>` : '') +
-    (constraints.length && d.c.some(known) ? `<div class="group"><h3>Constraints</h3>${constraints.join('')}</div>` : '') +
+    (constraints ? `<div class="group"><h3>Constraints</h3>${constraints}</div>` : '') +
+    (watched ? `<div class="group"><h3>Watched, without a limit</h3>${watched}</div>` : '') +
     (d.files ? `<div class="group"><h3>Files</h3>${d.files.map(f => `<div class="row"><a href="${escaped(f.href)}">${escaped(f.label)}</a><small>${escaped(f.size)}</small></div>`).join('')}</div>` : '') +
     `<div class="group"><button type="button" class="copy" data-copy="${escaped(command(d))}">Copy export command</button></div>`;
 }
@@ -92,7 +95,7 @@ function drawFlight(i) {
   element('flight-name').textContent = name(d);
   const flight = report.details[d.detail]?.flight, reference = original && report.details[original.detail]?.flight;
   box.querySelectorAll('.history > div').forEach(node => window.Plotly?.purge(node));
-  const facts = report.flight_facts.map((f, k) => !known(d.fl[k]) ? '' : `<div><dt>${escaped(f.label)}</dt><dd>${withUnit(number(d.fl[k] * f.factor, 3), f.unit)}</dd></div>`);
+  const facts = report.flight_facts.map((f, k) => !known(d.fl[k]) ? '' : `<div><dt>${escaped(f.label)}</dt><dd>${withUnit(number(d.fl[k], 3), f.unit)}</dd></div>`);
   element('flight-facts').innerHTML = facts.join('');
   if (!flight) {
     box.innerHTML = element('parts-absent')?.innerHTML ? '' : absent('Flight histories are');

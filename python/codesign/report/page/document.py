@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,15 +10,16 @@ import numpy as np
 from codesign.evaluation import Evaluation
 from codesign.report.data import Quantity, ReportData, constraint_quantity, words
 from codesign.report.details import detail_key
+from codesign.units import DEGREE
 
 STATUS = {"feasible": 0, "infeasible": 1, "failed": 2}
 PART_KEYS = ("mass", "safety_factor", "peak_stress", "stress_error", "max_displacement")
 FLIGHT_FACTS = (
-    (Quantity("max_com_error", "Largest position error", "cm"), 100.0),
-    (Quantity("max_attitude_error", "Largest attitude error", "°"), 180.0 / np.pi),
-    (Quantity("min_thrust", "Lowest jet thrust", "N"), 1.0),
-    (Quantity("max_thrust", "Highest jet thrust", "N"), 1.0),
-    (Quantity("duration", "Flown", "s"), 1.0),
+    Quantity("max_com_error", "Largest position error", "cm", factor=100.0),
+    Quantity("max_attitude_error", "Largest attitude error", "°", factor=1.0 / DEGREE),
+    Quantity("min_thrust", "Lowest jet thrust", "N"),
+    Quantity("max_thrust", "Highest jet thrust", "N"),
+    Quantity("duration", "Flown", "s"),
 )
 
 
@@ -47,11 +49,9 @@ def page_document(
             {"key": o.key, "label": o.label, "unit": o.unit, "title": o.title, "view": run.view(k)}
             for k, o in enumerate(run.objectives)
         ],
-        "constraints": [
-            {"key": key, "label": constraint_quantity(key).label, "rule": _rule(run, key)} for key in constraints
-        ],
+        "constraints": [_constraint(run, key) for key in constraints],
         "parts": [{"key": name, "label": words(name)} for name in parts],
-        "flight_facts": [{"label": q.label, "unit": q.unit, "factor": factor} for q, factor in FLIGHT_FACTS],
+        "flight_facts": [{"label": q.label, "unit": q.unit} for q in FLIGHT_FACTS],
         "designs": rows,
         "baseline": baseline,
         "recommended": run.recommended,
@@ -71,10 +71,10 @@ def _row(
         "status": STATUS[evaluation.status],
         "reason": evaluation.reason,
         "f": [_rounded(evaluation.objectives.get(k)) for k in run.keys],
-        "c": [_rounded(evaluation.constraints.get(k)) for k in constraints],
+        "c": [_shown(constraint_quantity(k), evaluation.constraints) for k in constraints],
         "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
-        "fl": [_rounded(evaluation.flight.get(q.key)) for q, _ in FLIGHT_FACTS],
+        "fl": [_shown(quantity, evaluation.flight) for quantity in FLIGHT_FACTS],
         "detail": key,
     }
     if key in files:
@@ -84,6 +84,11 @@ def _row(
 
 def _part(numbers: dict[str, Any]) -> list[float | None]:
     return [_rounded(numbers.get(key)) for key in PART_KEYS]
+
+
+def _shown(quantity: Quantity, numbers: Mapping[str, Any]) -> float | None:
+    value = numbers.get(quantity.key)
+    return None if value is None else _rounded(quantity.factor * value)
 
 
 def _rounded(value: Any) -> float | None:
@@ -99,11 +104,14 @@ def _any_nonzero(run: ReportData, key: str) -> bool:
     return any(e.evaluation.constraints.get(key) for e in run.entries)
 
 
-def _rule(run: ReportData, key: str) -> str:
-    if key not in run.limits:
-        return ""
-    sign, limit = run.limits[key]
-    return f"{ {'>=': '≥', '<=': '≤'}[sign] } {limit:g}"
+def _constraint(run: ReportData, key: str) -> dict[str, Any]:
+    """Words of a constraint; `rule` is empty for a number that is only watched."""
+    quantity = constraint_quantity(key)
+    rule = ""
+    if key in run.limits:
+        sign, limit = run.limits[key]
+        rule = f"{ {'>=': '≥', '<=': '≤'}[sign] } {quantity.factor * limit:g}"
+    return {"key": key, "label": quantity.label, "unit": quantity.unit, "meaning": quantity.meaning, "rule": rule}
 
 
 def _unit(unit: str) -> str:

@@ -11,7 +11,7 @@ function columns() {
     head: o.label, unit: o.unit, value: d => d.f[k],
     text: d => known(d.f[k]) ? number(d.f[k]) + (original ? `<small class="${sense(change(d, k))}">${percent(change(d, k))}</small>` : '') : '–',
   }));
-  report.constraints.forEach((c, k) => found.push({head: c.label, unit: c.rule, value: d => d.c[k], text: d => number(d.c[k], 3)}));
+  report.constraints.forEach((c, k) => found.push({head: c.label, unit: [c.unit, c.rule].filter(Boolean).join(' '), value: d => d.c[k], text: d => number(d.c[k], 3)}));
   found.push({head: 'Remark', text_align: true, value: d => roles(d).join() || d.reason || '', text: d => escaped(roles(d).join(', ') || d.reason || STATUS[d.status])});
   return found;
 }
