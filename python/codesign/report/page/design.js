@@ -73,18 +73,43 @@ function eye(node) {
 }
 
 function drawSolid(node, solid) {
-  if (!solid.decoded) {
-    const grid = decode(solid.points, Uint16Array), faces = decode(solid.faces, solid.wide ? Uint32Array : Uint16Array), stress = decode(solid.stress, Uint16Array);
-    const coordinate = k => Float32Array.from({length: grid.length / 3}, (_, n) => solid.low[k] + grid[3 * n + k] * solid.step);
-    const corner = k => Uint32Array.from({length: faces.length / 3}, (_, n) => faces[3 * n + k]);
-    solid.decoded = {x: coordinate(0), y: coordinate(1), z: coordinate(2), i: corner(0), j: corner(1), k: corner(2), intensity: Float32Array.from(stress, s => s / 65535 * solid.highest * 1e-6)};
-  }
+  const mesh = solid.decoded ??= decodedSolid(solid), limit = solid.peak * 1e-6;
   const hidden = {visible: false, showspikes: false};
+  const bar = {title: {text: 'MPa', side: 'top', font: font()}, thickness: 9, len: 0.7, x: 0.98, xanchor: 'right', outlinewidth: 0, tickfont: font(), ticklen: 0, nticks: 6};
   plotly().newPlot(node, [{
-    type: 'mesh3d', ...solid.decoded, colorscale: STRESS_SCALE, cmin: 0, cmax: solid.highest * 1e-6, flatshading: true, hovertemplate: '%{intensity:.2f} MPa<extra></extra>',
-    lighting: {ambient: 0.55, diffuse: 0.75, specular: 0.05, roughness: 0.8, fresnel: 0}, lightposition: {x: 2000, y: -4000, z: 9000},
-    colorbar: {title: {text: 'MPa', side: 'top', font: font()}, thickness: 9, len: 0.7, x: 0.98, xanchor: 'right', outlinewidth: 0, tickfont: font(), ticklen: 0, nticks: 6},
+    type: 'mesh3d', x: mesh.x, y: mesh.y, z: mesh.z, i: mesh.i, j: mesh.j, k: mesh.k, facecolor: mesh.colours, text: mesh.text, hovertemplate: '%{text} MPa<extra></extra>',
+    lighting: {ambient: 1, diffuse: 0, specular: 0, fresnel: 0},
+  }, {  // carries the colour bar
+    type: 'scatter3d', mode: 'markers', x: [mesh.x[0]], y: [mesh.y[0]], z: [mesh.z[0]], hoverinfo: 'skip',
+    marker: {size: 1, opacity: 0, color: [0], colorscale: STRESS_SCALE, cmin: 0, cmax: limit, showscale: true, colorbar: bar},
   }], layout({margin: {l: 0, r: 0, t: 0, b: 0}, scene: {xaxis: hidden, yaxis: hidden, zaxis: hidden, aspectmode: 'data', dragmode: 'orbit', camera: {eye: eye(node), projection: {type: 'orthographic'}}}}), settings);
+}
+
+/** Arrays for plotly, with a colour for each triangle: that of its stress, shaded here because plotly's lights fail without perspective. */
+function decodedSolid(solid) {
+  const grid = decode(solid.points, Uint16Array), faces = decode(solid.faces, solid.wide ? Uint32Array : Uint16Array);
+  const stress = Float32Array.from(decode(solid.stress, Uint16Array), s => s / 65535 * solid.highest);
+  const coordinate = k => Float32Array.from({length: grid.length / 3}, (_, n) => solid.low[k] + grid[3 * n + k] * solid.step);
+  const corner = k => Uint32Array.from({length: faces.length / 3}, (_, n) => faces[3 * n + k]);
+  const [x, y, z, i, j, k] = [coordinate(0), coordinate(1), coordinate(2), corner(0), corner(1), corner(2)];
+  const colours = Array.from(i, (a, n) => {
+    const b = j[n], c = k[n];
+    const [ux, uy, uz, vx, vy, vz] = [x[b] - x[a], y[b] - y[a], z[b] - z[a], x[c] - x[a], y[c] - y[a], z[c] - z[a]];
+    const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    const facing = (nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2]) / (Math.hypot(nx, ny, nz) || 1);
+    return stressColour((stress[a] + stress[b] + stress[c]) / 3 / solid.peak, 0.8 + 0.2 * facing);
+  });
+  return {x, y, z, i, j, k, colours, text: Array.from(stress, s => number(s * 1e-6, 3))};
+}
+
+const LIGHT = [0.3, -0.55, 0.78];
+const STRESS_STOPS = STRESS_SCALE.map(([at, hex]) => [at, [1, 3, 5].map(n => parseInt(hex.slice(n, n + 2), 16))]);
+
+/** Colour of a stress relative to the peak, darkened by `shade`. */
+function stressColour(share, shade) {
+  const at = Math.min(Math.max(share, 0), 1), n = Math.max(1, STRESS_STOPS.findIndex(([stop]) => stop >= at));
+  const [[low, from], [high, to]] = [STRESS_STOPS[n - 1], STRESS_STOPS[n]], part = (at - low) / (high - low);
+  return `rgb(${from.map((c, m) => Math.round(shade * (c + part * (to[m] - c)))).join()})`;
 }
 
 const SERIES = ['series-1', 'series-2', 'series-3', 'series-4'];

@@ -85,7 +85,11 @@ def _parts_and_flight() -> Block:
         '<dl class="facts" id="flight-facts"></dl><div id="histories" class="histories"></div>'
     )
     title = 'Parts of <span id="parts-name"></span>'
-    return _block("parts-and-flight", "Parts and flight", title, "", body)
+    text = (
+        "Colours end at the peak stress, from which the safety factor is made; stress right beside clamps, which no "
+        "mesh settles, may be higher. Of a part with a plane of symmetry one half was analysed. Drag to turn."
+    )
+    return _block("parts-and-flight", "Parts and flight", title, text, body)
 
 
 def _designs(run: ReportData) -> Block:
