@@ -1,4 +1,4 @@
-"""Effect of the study's options on the safety factor, and simplified against full parts; tables of docs/fem.md.
+"""Effect of the study's options, of simplified parts and of the sizes of the mesh on the stress; tables of docs/fem.md.
 
 python benchmarks/fem_options.py
 """
@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 import codesign
-from codesign import _core
+from codesign import _core, fem
 from codesign.analysis import StressSettings, confirm, part_case, part_document
 from codesign.geometry.part import Part
 from codesign.pipeline import stress_settings
@@ -26,6 +26,9 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "bolted": {"support": "bolted"},
     "both": {"load": "thrust_line", "support": "bolted"},
 }
+OFFSETS, LENGTHS = (80, 90, 100, 110, 120), (50, 100, 150)
+TITANIUM_YIELD = 880e6  # Pa, Ti-6Al-4V; the stress of a clamped part under a given force does not ask for its modulus
+SIZES = (1.25, 1.0, 0.8)
 MEGA, MILLI = 1e6, 1e-3
 
 
@@ -73,6 +76,33 @@ def geometries(part: Part, settings: StressSettings) -> None:
     print_geometry(part, f"full, fine, refined {confirmed['refinements']} ×", confirmed, mass.mass, seconds)
 
 
+def thrust_lines(study: codesign.Study) -> None:
+    """Safety factors of forearm supports under a thrust on the turbine's axis, in two materials."""
+    settings = replace(stress_settings(study.config, "forearm_support"), load="thrust_line")
+    for offset in OFFSETS:
+        peaks = []
+        for length in LENGTHS:
+            part = study.build_parts({**DESIGNS[0], "offset": offset, "length": length})["forearm_support"]
+            peaks.append(analyse(part, settings)[0].result.peak_stress)
+        for yield_strength in (settings.material.yield_strength, TITANIUM_YIELD):
+            factors = " | ".join(f"{yield_strength / peak:.1f}" for peak in peaks)
+            print(f"| {offset} | {yield_strength / MEGA:.0f} | {factors} |", flush=True)
+
+
+def mesh_sizes(part: Part, settings: StressSettings) -> None:
+    """Stress on meshes whose sizes are all multiplied by the same number."""
+    results = []
+    for scale in SIZES:
+        case = part_case(part, settings)
+        sources = [fem.SizeSource(s.points, scale * s.size, s.growth, s.radius) for s in case.size.sources]
+        case.size = fem.SizeField(scale * case.size.base, sources)
+        results.append(_core.analyse_part(case).result)
+    cells = [
+        f"{value / MEGA:.2f}" for name in ("stress_50", "peak_stress") for value in (getattr(r, name) for r in results)
+    ]
+    print(f"| {part.title} | {' | '.join(cells)} |", flush=True)
+
+
 def main() -> None:
     study = codesign.load_study("ironcub")
     parts = [
@@ -86,6 +116,13 @@ def main() -> None:
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for part, settings in parts:
         geometries(part, settings)
+    print("\n| offset, mm | yield, MPa | " + " | ".join(f"length {length} mm" for length in LENGTHS) + " |")
+    print("| --- | --- | --- | --- | --- |")
+    thrust_lines(study)
+    titles = [f"{name} × {scale:g}" for name in ("σ_50", "peak") for scale in SIZES]
+    print(f"\n| part | {' | '.join(titles)} |\n| --- |" + " --- |" * len(titles))
+    for part, settings in parts:
+        mesh_sizes(part, settings)
 
 
 if __name__ == "__main__":
