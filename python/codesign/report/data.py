@@ -61,6 +61,12 @@ CONSTRAINTS = {
     "safety_factor": Quantity(
         "safety_factor", "Safety factor", "", "Yield strength over peak stress of the weakest part."
     ),
+    "first_frequency": Quantity(
+        "first_frequency", "First natural frequency", "Hz", "Lowest frequency of a part on its supports."
+    ),
+    "buckling_factor": Quantity(
+        "buckling_factor", "Buckling factor", "", "Multiple of its load at which the first part buckles."
+    ),
     "qp_failures": Quantity("qp_failures", "Controller failures", "", "Control steps without a solution."),
 }
 

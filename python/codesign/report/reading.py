@@ -40,12 +40,16 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
         baseline=evaluated,
         waiting=run.counts.get("queued", 0) + run.counts.get("running", 0),
         planned=None if run.finished else run.settings.get("evaluations"),
-        limits={"safety_factor": (">=", study.config.constraints.safety_factor_min)} if study is not None else {},
+        limits=_limits(study) if study is not None else {},
         provenance=provenance(run),
         export_command=f"codesign export --study {run.study['source']}",
         labels={name: v.label for name, v in study.config.variables.items()} if study is not None else {},
         notes=_notes(run, study),
     )
+
+
+def _limits(study: Any) -> dict[str, tuple[str, float]]:
+    return {name: (">=", limit) for name, limit in study.config.constraints.part_minima.items()}
 
 
 def study_of(directory: Path) -> Any:

@@ -103,7 +103,7 @@ def _rule(run: ReportData, key: str) -> str:
     if key not in run.limits:
         return ""
     sign, limit = run.limits[key]
-    return f"{ {'>=': '≥', '<=': '≤'}[sign] } {limit:g}"
+    return f"{ {'>=': '≥', '<=': '≤'}[sign] } {limit:g} {constraint_quantity(key).unit}".rstrip()
 
 
 def _unit(unit: str) -> str:
