@@ -127,7 +127,7 @@ void bind_result(py::module_& m) {
       .def_readonly("shape", &BucklingModes::shape, "(3 n, k) columns, the largest node moves 1")
       .def_readonly("reversed", &BucklingModes::reversed,
                     "lowest factor of the load reversed; inf: none")
-      .def_readonly("limit", &BucklingModes::limit, "factor above which none counts");
+      .def_readonly("limit", &BucklingModes::limit, "factor up to which was sought");
   py::class_<StaticSystem>(m, "StaticSystem", "A model factorised once for many load cases.")
       .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings>(), "mesh"_a,
            "material"_a, "supports"_a, "settings"_a, py::call_guard<py::gil_scoped_release>())

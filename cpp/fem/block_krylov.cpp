@@ -98,9 +98,10 @@ Eigenpairs extreme_eigenpairs(const LowerMatrix& inner, const SelfAdjoint& apply
     const bool still = stand_still(value, last, wanted);
     last = value;
     if (!still && added > 0) continue;
-    return {value.head(top),
-            basis.v.leftCols(basis.size) * ritz.eigenvectors().rightCols(top).rowwise().reverse(),
-            value.tail(bottom)};
+    Eigen::MatrixXd coefficients(basis.size, top + bottom);
+    coefficients << ritz.eigenvectors().rightCols(top).rowwise().reverse(),
+        ritz.eigenvectors().leftCols(bottom);
+    return {value, basis.v.leftCols(basis.size) * coefficients};
   }
   throw SolverError("the eigenvalues of the part have not converged");
 }

@@ -13,16 +13,17 @@ using SelfAdjoint =
     std::function<Eigen::MatrixXd(const Eigen::MatrixXd& v, const Eigen::MatrixXd& mv)>;
 
 struct WantedEigenvalues {
-  Eigen::Index largest = 1;   // how many of the greatest, with their vectors
+  Eigen::Index largest = 1;   // how many of the greatest
   Eigen::Index smallest = 0;  // how many of the least
   double tolerance = 1e-9;    // relative change of a value that stands still
   double negligible = 0.0;    // a value of smaller magnitude need only be seen to stay so small
 };
 
+// The largest eigenvalues, descending, then the smallest, ascending; vectors are columns,
+// orthonormal in the inner product.
 struct Eigenpairs {
-  Eigen::VectorXd largest;   // descending
-  Eigen::MatrixXd vectors;   // of the largest, columns, orthonormal in the inner product
-  Eigen::VectorXd smallest;  // ascending
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
 };
 
 // Block Krylov method with full orthogonalisation, until the wanted eigenvalues stand still.

@@ -5,11 +5,13 @@
 #include <functional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "fem/block_krylov.hpp"
 #include "fem/rigid_motions.hpp"
 #include "fem/stiffness.hpp"
 #include "fem/stress.hpp"
+#include "fem/tet10.hpp"
 
 namespace codesign::fem {
 
@@ -17,7 +19,7 @@ namespace {
 
 constexpr double kTolerance = 1e-6;  // relative change of a factor
 constexpr double kVolumeShare = 0.01;
-constexpr double kStressLimit = 0.25;  // of the shear modulus
+constexpr double kStressLimit = 0.25;  // of the shear modulus, see BucklingModes
 
 // Magnitude of the stress tensor (Pa) exceeded in a share of the part: no singular point counts.
 double bulk_stress(const TetMesh& mesh, const Material& material, const Eigen::VectorXd& u) {
@@ -43,6 +45,46 @@ Eigen::MatrixXd multiply_columns(const LowerMatrix& a, const Eigen::MatrixXd& x)
   return y;
 }
 
+// Stress (Pa) at which the mode's work equals its strain energy: xᵀ K x over the integral of
+// |grad x|², which is small where the part turns more than it is strained.
+double stress_of_mode(const TetMesh& mesh, const Eigen::VectorXd& shape, double strain_energy) {
+  double squares = 0.0;
+  TetPoints points;
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    const TetNodes x = tet_nodes(mesh, e), u = tet_displacements(mesh, e, shape);
+    evaluate_tet(x, stiffness_rule(x), points);
+    for (int q = 0; q < points.count; ++q) {
+      const std::size_t i = static_cast<std::size_t>(q);
+      squares += points.weights[i] * (u * points.gradients[i].transpose()).squaredNorm();
+    }
+  }
+  return strain_energy / squares;
+}
+
+// Reads the modes that count from the eigenpairs: `most` of the load, then one of it reversed.
+void read_modes(const TetMesh& mesh, const NodePattern& pattern, const Eigenpairs& pairs,
+                Eigen::Index most, double stress_limit, BucklingModes& modes) {
+  const double negligible = 1.0 / modes.limit;
+  const Eigen::MatrixXd shapes = nodal_columns(pattern, pairs.vectors);  // of xᵀ K x = 1
+  const auto counts = [&](Eigen::Index k) {
+    return std::abs(pairs.values[k]) > negligible &&
+           stress_of_mode(mesh, shapes.col(k), 1.0) < stress_limit;
+  };
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < most && pairs.values[k] > 0; ++k) {
+    if (counts(k)) kept.push_back(k);
+  }
+  modes.factor = pairs.values(kept).cwiseInverse();
+  modes.shape = shapes(Eigen::all, kept);
+  for (auto shape : modes.shape.colwise()) {
+    shape /= std::sqrt(shape.reshaped(3, mesh.nodes.rows()).colwise().squaredNorm().maxCoeff());
+  }
+  if (pairs.values[most] < 0 && counts(most)) modes.reversed = -1.0 / pairs.values[most];
+  // Local modes have taken the places of those above them.
+  const bool crowded = static_cast<Eigen::Index>(kept.size()) < most;
+  if (crowded && pairs.values[most - 1] > negligible) modes.limit = 1.0 / pairs.values[most - 1];
+}
+
 }  // namespace
 
 BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
@@ -60,7 +102,8 @@ BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
   const Eigen::Index block = std::min<Eigen::Index>(std::max(most + 2, Eigen::Index{4}), n);
   const Eigen::VectorXd u =
       Eigen::Map<const Eigen::VectorXd>(displacement.data(), displacement.size());
-  modes.limit = kStressLimit * shear_modulus(material) / bulk_stress(mesh, material, u);
+  const double stress_limit = kStressLimit * shear_modulus(material);
+  modes.limit = stress_limit / bulk_stress(mesh, material, u);
   const LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
   const LowerMatrix geometric = assemble_geometric_stiffness(mesh, material, u, pattern);
   const auto apply = [&](const Eigen::MatrixXd& v, const Eigen::MatrixXd&) -> Eigen::MatrixXd {
@@ -70,14 +113,7 @@ BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
       .largest = most, .smallest = 1, .tolerance = kTolerance, .negligible = 1.0 / modes.limit};
   const Eigenpairs pairs =
       extreme_eigenpairs(stiffness, apply, factor.solve(random_block(n, block)), wanted);
-  const Eigen::Index found = (pairs.largest.array() > wanted.negligible).count();
-  modes.factor = pairs.largest.head(found).cwiseInverse();
-  modes.shape = nodal_columns(pattern, pairs.vectors.leftCols(found));
-  for (Eigen::Index k = 0; k < found; ++k) {
-    const Eigen::Map<const Points> moved(modes.shape.col(k).data(), mesh.nodes.rows(), 3);
-    modes.shape.col(k) /= moved.rowwise().norm().maxCoeff();
-  }
-  if (pairs.smallest[0] < -wanted.negligible) modes.reversed = -1.0 / pairs.smallest[0];
+  read_modes(mesh, pattern, pairs, most, stress_limit, modes);
   return modes;
 }
 

@@ -15,15 +15,17 @@ namespace codesign::fem {
 // Linear buckling, (K + factor K_sigma) x = 0: K_sigma is the geometric stiffness of the stress
 // under the load, which keeps its direction and grows in proportion.
 //
-// Factors above the limit, which would stress more than 1 % of the part beyond a quarter of the
-// shear modulus, do not count. No material bears that, and K⁻¹ K_sigma is no compact operator: its
-// eigenvalues of about stress / shear modulus are a continuum (short waves, like wrinkles of a
-// compressed surface) of which every mesh shows other ones.
+// K⁻¹ K_sigma is no compact operator: its eigenvalues of about stress / shear modulus are a
+// continuum (short waves, like wrinkles of a compressed surface, drawn to singular stresses) of
+// which every mesh shows other ones. What counts is a mode that turns the part more than it strains
+// it: one that buckles at a mean stress below a quarter of the shear modulus, G / 4, weighted by
+// |grad x|². Factors are sought up to the one that stresses 1 % of the part beyond G / 4, far more
+// than any material bears, or to the last of the modes asked for if some of them do not count.
 struct BucklingModes {
   Eigen::VectorXd factor;  // (k <= count) of the load, > 0, ascending; empty: none up to the limit
   Eigen::MatrixXd shape;  // (3 n, k) column: x y z of node 0, then node 1 ...; largest node moves 1
   double reversed = std::numeric_limits<double>::infinity();  // lowest of the load reversed
-  double limit = std::numeric_limits<double>::infinity();
+  double limit = std::numeric_limits<double>::infinity();     // factor up to which was sought
 };
 
 // The lowest buckling modes on the supports under the load that gives the displacement (n, 3) m;

@@ -31,7 +31,7 @@ NaturalModes modes_of_factor(const NodePattern& pattern, const LowerMatrix& mass
       factor.solve(random_block(n, block)), {.largest = wanted});
   NaturalModes modes{Eigen::VectorXd(wanted), nodal_columns(pattern, pairs.vectors)};
   for (Eigen::Index k = 0; k < wanted; ++k) {  // the largest value is the lowest frequency
-    const double square = 1.0 / pairs.largest[k] - shift;
+    const double square = 1.0 / pairs.values[k] - shift;
     modes.frequency[k] = square > 1e-6 * shift ? std::sqrt(square) / (2.0 * kPi) : 0.0;
   }
   return modes;

@@ -206,12 +206,6 @@ void spread(const NodeMatrix& m, ElementMatrix& k) {
   }
 }
 
-TetNodes element_displacement(const TetMesh& mesh, int e, const Eigen::VectorXd& displacement) {
-  TetNodes u;
-  for (int i = 0; i < kTetNodes; ++i) u.col(i) = displacement.segment<3>(3 * mesh.tets(e, i));
-  return u;
-}
-
 // Stress (Pa) of a displacement field at a point of an element.
 Eigen::Matrix3d stress_tensor(double lambda, double mu, const TetNodes& u, const TetGradients& g) {
   const Eigen::Matrix3d h = u * g.transpose();  // d u_i / d x_j
@@ -253,7 +247,7 @@ LowerMatrix assemble_geometric_stiffness(const TetMesh& mesh, const Material& ma
   const double lambda = lame_lambda(material), mu = shear_modulus(material);
   TetPoints points;
   return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
-    const TetNodes u = element_displacement(mesh, e, displacement);
+    const TetNodes u = tet_displacements(mesh, e, displacement);
     evaluate_tet(tet_nodes(mesh, e), tet_rule_14(), points);
     NodeMatrix m = NodeMatrix::Zero();
     for (int q = 0; q < points.count; ++q) {
@@ -294,7 +288,7 @@ InternalForces internal_forces(const TetMesh& mesh, const Material& material,
                    Eigen::VectorXd::Zero(displacement.size())};
   TetPoints points;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
-    const TetNodes x = tet_nodes(mesh, e), u = element_displacement(mesh, e, displacement);
+    const TetNodes x = tet_nodes(mesh, e), u = tet_displacements(mesh, e, displacement);
     evaluate_tet(x, stiffness_rule(x), points);
     TetNodes force = TetNodes::Zero();
     for (int q = 0; q < points.count; ++q) {

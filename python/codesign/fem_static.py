@@ -41,7 +41,8 @@ class Buckling:
 
     factor: (k,) of the load, > 0, ascending; fewer than asked for if there are no more up to the limit.
     shape: (k, n, 3), the largest displacement is 1. reversed: lowest factor of the reversed load; inf: none.
-    limit: the factor that stresses 1 % of the part beyond a quarter of the shear modulus: none above it is given.
+    limit: the factor up to which was sought, at most the one that stresses 1 % of the part beyond a quarter of the
+    shear modulus.
     """
 
     factor: NDArray[np.float64]
@@ -51,7 +52,7 @@ class Buckling:
 
     @property
     def lowest(self) -> float:
-        """The lowest factor; inf if there is none."""
+        """The lowest factor; inf if there is none up to the limit."""
         return float(self.factor[0]) if len(self.factor) else math.inf
 
     @classmethod

@@ -562,7 +562,7 @@ class BucklingModes:
     @property
     def limit(self) -> float:
         """
-        factor above which none counts
+        factor up to which was sought
         """
     @property
     def reversed(self) -> float:
