@@ -45,9 +45,9 @@ Eigen::MatrixXd multiply_columns(const LowerMatrix& a, const Eigen::MatrixXd& x)
   return y;
 }
 
-// Stress (Pa) at which the mode's work equals its strain energy: xᵀ K x over the integral of
-// |grad x|², which is small where the part turns more than it is strained.
-double stress_of_mode(const TetMesh& mesh, const Eigen::VectorXd& shape, double strain_energy) {
+// Mean stress (Pa) at which a shape of xᵀ K x = 1 buckles, its weight |grad x|²: small where the
+// part turns more than it is strained.
+double stress_of_mode(const TetMesh& mesh, const Eigen::VectorXd& shape) {
   double squares = 0.0;
   TetPoints points;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
@@ -58,7 +58,7 @@ double stress_of_mode(const TetMesh& mesh, const Eigen::VectorXd& shape, double 
       squares += points.weights[i] * (u * points.gradients[i].transpose()).squaredNorm();
     }
   }
-  return strain_energy / squares;
+  return 1.0 / squares;
 }
 
 // Reads the modes that count from the eigenpairs: `most` of the load, then one of it reversed.
@@ -68,7 +68,7 @@ void read_modes(const TetMesh& mesh, const NodePattern& pattern, const Eigenpair
   const Eigen::MatrixXd shapes = nodal_columns(pattern, pairs.vectors);  // of xᵀ K x = 1
   const auto counts = [&](Eigen::Index k) {
     return std::abs(pairs.values[k]) > negligible &&
-           stress_of_mode(mesh, shapes.col(k), 1.0) < stress_limit;
+           stress_of_mode(mesh, shapes.col(k)) < stress_limit;
   };
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < most && pairs.values[k] > 0; ++k) {
