@@ -56,23 +56,41 @@ def cpu_seconds() -> float:
     )
 
 
-def write_deck(
-    path: Path, mesh: fem.TetMesh, material: fem.Material, held: list[tuple[int, int]], force: Array
-) -> None:
-    """CalculiX input, numbers of at most 20 characters; held: (node, component) pairs at zero; force: (n, 3) N."""
+def write_deck(path: Path, mesh: fem.TetMesh, case: Any, procedure: list[str], output: list[str]) -> None:
+    """CalculiX input of one step, numbers of at most 20 characters; procedure and output: its keyword lines."""
+    held = sorted(
+        {
+            (node, axis)
+            for support in case.supports
+            for node in native.selected_nodes(mesh, support.where)
+            for axis in range(3)
+            if support.fixed[axis]
+        }
+    )
+    force = native.load_vector(mesh, case.material, case.loads).reshape(-1, 3)
     lines = ["*NODE, NSET=ALL"]
     lines += [f"{i + 1},{x:.13e},{y:.13e},{z:.13e}" for i, (x, y, z) in enumerate(np.asarray(mesh.nodes).tolist())]
     lines.append("*ELEMENT, TYPE=C3D10, ELSET=PART")
     lines += [
         ",".join(map(str, [e + 1, *(n + 1 for n in tet)])) for e, tet in enumerate(np.asarray(mesh.tets).tolist())
     ]
+    material = case.material
     lines += ["*MATERIAL, NAME=M", "*ELASTIC", f"{material.young_modulus:.10e},{material.poisson_ratio:.10e}"]
     lines += ["*SOLID SECTION, ELSET=PART, MATERIAL=M", "*BOUNDARY"]
     lines += [f"{node + 1},{axis + 1}" for node, axis in held]
-    lines += ["*STEP", "*STATIC", "*CLOAD"]
+    lines += ["*STEP", *procedure, "*CLOAD"]
     lines += [f"{n + 1},{a + 1},{force[n, a]:.13e}" for n, a in zip(*np.nonzero(force), strict=True)]
-    lines += ["*NODE PRINT, NSET=ALL", "U", "*EL FILE", "S", "*END STEP", ""]
+    lines += [*output, "*END STEP", ""]
     path.write_text("\n".join(lines))
+
+
+def run_deck(folder: str) -> None:
+    """Runs part.inp in a folder on one thread."""
+    run = subprocess.run(
+        ["ccx", "part"], cwd=folder, capture_output=True, text=True, env=os.environ | {"OMP_NUM_THREADS": "1"}
+    )
+    if run.returncode:
+        raise RuntimeError(run.stdout[-2000:])
 
 
 def read_stress(text: str) -> Array:
@@ -85,23 +103,9 @@ def read_stress(text: str) -> Array:
 def calculix(mesh: fem.TetMesh, case: Any) -> Solution:
     """One static step; reading and writing of files counted."""
     start = cpu_seconds()
-    held = sorted(
-        {
-            (node, axis)
-            for support in case.supports
-            for node in native.selected_nodes(mesh, support.where)
-            for axis in range(3)
-            if support.fixed[axis]
-        }
-    )
-    force = native.load_vector(mesh, case.material, case.loads).reshape(-1, 3)
     with tempfile.TemporaryDirectory() as folder:
-        write_deck(Path(folder) / "part.inp", mesh, case.material, held, force)
-        run = subprocess.run(
-            ["ccx", "part"], cwd=folder, capture_output=True, text=True, env=os.environ | {"OMP_NUM_THREADS": "1"}
-        )
-        if run.returncode:
-            raise RuntimeError(run.stdout[-2000:])
+        write_deck(Path(folder) / "part.inp", mesh, case, ["*STATIC"], ["*NODE PRINT, NSET=ALL", "U", "*EL FILE", "S"])
+        run_deck(folder)
         stress = read_stress((Path(folder) / "part.frd").read_text())
         # eight digits, against six in the .frd file
         displacement = np.loadtxt(Path(folder) / "part.dat", skiprows=3)[:, 1:]

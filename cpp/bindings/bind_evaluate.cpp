@@ -48,12 +48,16 @@ void bind_evaluate(py::module_& m) {
       .def_readonly("settings", &fem::PartCase::settings)
       .def_readwrite("tolerance", &fem::PartCase::tolerance, "relative, of the peak stress")
       .def_readwrite("max_refinements", &fem::PartCase::max_refinements, "0: one pass")
-      .def_readwrite("modes", &fem::PartCase::modes, "natural frequencies wanted");
+      .def_readwrite("modes", &fem::PartCase::modes, "natural frequencies wanted")
+      .def_readwrite("buckling", &fem::PartCase::buckling, "buckling factors wanted");
   py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")
       .def_readonly("mesh", &fem::PartAnalysis::mesh)
       .def_readonly("result", &fem::PartAnalysis::result)
       .def_readonly("frequencies", &fem::PartAnalysis::frequencies,
                     "(modes,) Hz, ascending, of the whole part")
+      .def_readonly("buckling_factors", &fem::PartAnalysis::buckling_factors,
+                    "(buckling,) of the load, ascending, of the whole part; inf where there is "
+                    "none")
       .def_readonly("size", &fem::PartAnalysis::size, "SizeField of the mesh")
       .def_readonly("converged", &fem::PartAnalysis::converged,
                     "estimated error, and the change if there is one, within the tolerance")

@@ -122,11 +122,21 @@ void bind_result(py::module_& m) {
       .def_readonly("frequency", &NaturalModes::frequency,
                     "(k,) Hz, ascending; 0 for rigid motions")
       .def_readonly("shape", &NaturalModes::shape, "(3 n, k) columns, modal mass 1 kg");
+  py::class_<BucklingModes>(m, "BucklingModes", "Linear buckling of a part under a load.")
+      .def_readonly("factor", &BucklingModes::factor, "(k,) of the load, > 0, ascending")
+      .def_readonly("shape", &BucklingModes::shape, "(3 n, k) columns, the largest node moves 1")
+      .def_readonly("reversed", &BucklingModes::reversed,
+                    "lowest factor of the load reversed; inf: none")
+      .def_readonly("limit", &BucklingModes::limit, "factor up to which was sought");
   py::class_<StaticSystem>(m, "StaticSystem", "A model factorised once for many load cases.")
       .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings>(), "mesh"_a,
            "material"_a, "supports"_a, "settings"_a, py::call_guard<py::gil_scoped_release>())
       .def("solve", &StaticSystem::solve, "loads"_a, py::call_guard<py::gil_scoped_release>())
+      .def("displacement", &StaticSystem::displacement, "loads"_a,
+           py::call_guard<py::gil_scoped_release>(), "(n, 3) m, of one load case")
       .def("natural_modes", &StaticSystem::natural_modes, "count"_a,
+           py::call_guard<py::gil_scoped_release>())
+      .def("buckling_modes", &StaticSystem::buckling_modes, "displacement"_a, "count"_a,
            py::call_guard<py::gil_scoped_release>());
   m.def("natural_modes", &natural_modes, "mesh"_a, "material"_a, "supports"_a, "count"_a,
         py::call_guard<py::gil_scoped_release>());

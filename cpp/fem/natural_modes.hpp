@@ -24,8 +24,7 @@ struct NaturalModes {
 NaturalModes natural_modes(const TetMesh& mesh, const Material& material,
                            const std::vector<Support>& supports, int count);
 
-// The same from a factor of K + shift M. Block Krylov method on (K + shift M)⁻¹ M with full
-// orthogonalisation, until the wanted eigenvalues stand still to 1e-9.
+// The same from a factor of K + shift M, by the largest eigenvalues of (K + shift M)⁻¹ M.
 NaturalModes modes_of_factor(const NodePattern& pattern, const LowerMatrix& mass,
                              const CholeskyFactor& factor, double shift, int count);
 

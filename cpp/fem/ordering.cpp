@@ -187,4 +187,14 @@ NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
   return pattern;
 }
 
+Eigen::MatrixXd nodal_columns(const NodePattern& pattern, const Eigen::MatrixXd& free) {
+  const Eigen::Index n = static_cast<Eigen::Index>(pattern.equation.size());
+  Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(n, free.cols());
+  for (Eigen::Index d = 0; d < n; ++d) {
+    const int equation = pattern.equation[static_cast<std::size_t>(d)];
+    if (equation >= 0) nodal.row(d) = free.row(equation);
+  }
+  return nodal;
+}
+
 }  // namespace codesign::fem

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "fem/supernodes.hpp"
@@ -31,5 +32,8 @@ enum class VertexOrdering { automatic, minimum_degree, nested_dissection };
 // tenth to a thirtieth of ordering all nodes and keeps the fill.
 NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
                         VertexOrdering method = VertexOrdering::automatic);
+
+// Values of the equations, a column each, as nodal components (3 n, k); zero where held.
+Eigen::MatrixXd nodal_columns(const NodePattern& pattern, const Eigen::MatrixXd& free);
 
 }  // namespace codesign::fem

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -16,10 +17,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The lowest frequencies of the part; the modes of a symmetric part are symmetric (those of its
-// half) or antisymmetric: on the cut plane the other components are then held.
-Eigen::VectorXd frequencies(const PartCase& part, const StaticSystem& system) {
-  Eigen::VectorXd lowest = system.natural_modes(part.modes).frequency;
+// Supports of the half of a symmetric part for its antisymmetric motions: on the cut plane the
+// other components are then held. Empty if the model is no half.
+std::vector<Support> antisymmetric_supports(const PartCase& part) {
   std::vector<Support> turned = part.supports;
   bool half = false;
   for (Support& support : turned) {
@@ -27,13 +27,43 @@ Eigen::VectorXd frequencies(const PartCase& part, const StaticSystem& system) {
     half = true;
     for (bool& fixed : support.fixed) fixed = !fixed;
   }
-  if (!half || part.settings.copies != 2) return lowest;
-  const Eigen::VectorXd others =
-      natural_modes(system.mesh(), part.material, turned, part.modes).frequency;
-  Eigen::VectorXd all(lowest.size() + others.size());
-  all << lowest, others;
+  if (!half || part.settings.copies != 2) turned.clear();
+  return turned;
+}
+
+// The lowest `count` of two sets of eigenvalues, ascending.
+Eigen::VectorXd lowest_of(const Eigen::VectorXd& some, const Eigen::VectorXd& others, int count) {
+  Eigen::VectorXd all(some.size() + others.size());
+  all << some, others;
   std::sort(all.begin(), all.end());
-  return all.head(std::min<Eigen::Index>(part.modes, all.size()));
+  return all.head(std::min<Eigen::Index>(count, all.size()));
+}
+
+// The lowest frequencies of the part; the modes of a symmetric part are symmetric (those of its
+// half) or antisymmetric.
+Eigen::VectorXd frequencies(const PartCase& part, const StaticSystem& system) {
+  const Eigen::VectorXd symmetric = system.natural_modes(part.modes).frequency;
+  const std::vector<Support> turned = antisymmetric_supports(part);
+  if (turned.empty()) return symmetric;
+  const NaturalModes others = natural_modes(system.mesh(), part.material, turned, part.modes);
+  return lowest_of(symmetric, others.frequency, part.modes);
+}
+
+// The lowest buckling factors of the part, symmetric and antisymmetric modes alike: the load and
+// so the stress are symmetric in both.
+Eigen::VectorXd buckling_factors(const PartCase& part, const StaticSystem& system,
+                                 const Points& displacement) {
+  Eigen::VectorXd found = system.buckling_modes(displacement, part.buckling).factor;
+  const std::vector<Support> turned = antisymmetric_supports(part);
+  if (!turned.empty()) {
+    const BucklingModes others =
+        buckling_modes(system.mesh(), part.material, turned, displacement, part.buckling);
+    found = lowest_of(found, others.factor, part.buckling);
+  }
+  Eigen::VectorXd factors =
+      Eigen::VectorXd::Constant(part.buckling, std::numeric_limits<double>::infinity());
+  factors.head(found.size()) = found;
+  return factors;
 }
 
 // One mesh and its solution; times are added to those of the passes before.
@@ -45,6 +75,9 @@ void run_pass(const PartCase& part, PartAnalysis& analysis) {
   const StaticSystem system(analysis.mesh, part.material, part.supports, part.settings);
   analysis.result = system.solve(part.loads);
   if (part.modes > 0) analysis.frequencies = frequencies(part, system);
+  if (part.buckling > 0) {
+    analysis.buckling_factors = buckling_factors(part, system, analysis.result.displacement);
+  }
   analysis.solve_seconds += seconds_since(meshed);
 }
 

@@ -25,13 +25,16 @@ struct PartCase {
   double tolerance = 0.05;  // wanted relative error of the peak stress, and so of the safety factor
   int max_refinements = 0;  // local refinements around the peak allowed to reach it; 0: one pass
   int modes = 0;            // natural frequencies wanted
+  int buckling = 0;         // buckling factors wanted
 };
 
 struct PartAnalysis {
   TetMesh mesh;
   StaticResult result;
   Eigen::VectorXd frequencies;  // (modes) Hz, ascending, of the whole part
-  SizeField size;               // that the mesh was made with
+  // (buckling) of the load, ascending, of the whole part; infinity where there is none
+  Eigen::VectorXd buckling_factors;
+  SizeField size;          // that the mesh was made with
   bool converged = false;  // estimated error, and the change if there is one, within the tolerance
   int refinements = 0;     // done
   double change = 0.0;     // of the peak stress by the last refinement, relative

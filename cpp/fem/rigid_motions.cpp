@@ -198,4 +198,12 @@ std::vector<std::string> free_rigid_motions(const TetMesh& mesh, const Constrain
   return text;
 }
 
+void require_held(const TetMesh& mesh, const Constraints& constraints) {
+  const std::vector<std::string> motions = free_rigid_motions(mesh, constraints);
+  if (motions.empty()) return;
+  std::string text = "the supports leave the part free to move: ";
+  for (std::size_t i = 0; i < motions.size(); ++i) text += (i == 0 ? "" : "; ") + motions[i];
+  throw SolverError(text);
+}
+
 }  // namespace codesign::fem

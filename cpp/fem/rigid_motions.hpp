@@ -14,4 +14,7 @@ namespace codesign::fem {
 // hinge is found too.
 std::vector<std::string> free_rigid_motions(const TetMesh& mesh, const Constraints& constraints);
 
+// Throws SolverError naming the free rigid motions, if there are any.
+void require_held(const TetMesh& mesh, const Constraints& constraints);
+
 }  // namespace codesign::fem

@@ -49,14 +49,6 @@ bool solves_directly(const NodePattern& pattern, const StaticSettings& settings)
          pattern.supernodes.operations <= kDirectOperations;
 }
 
-void require_held(const TetMesh& mesh, const Constraints& constraints) {
-  const std::vector<std::string> motions = free_rigid_motions(mesh, constraints);
-  if (motions.empty()) return;
-  std::string text = "the supports leave the part free to move: ";
-  for (std::size_t i = 0; i < motions.size(); ++i) text += (i == 0 ? "" : "; ") + motions[i];
-  throw SolverError(text);
-}
-
 }  // namespace
 
 struct StaticSystem::Data {
@@ -204,6 +196,24 @@ NaturalModes StaticSystem::natural_modes(int count) const {
   if (!(d.material.density > 0)) throw std::invalid_argument("modes need a density above 0");
   return modes_of_factor(d.pattern, assemble_mass(d.mesh, d.material, d.pattern), *d.factor, 0.0,
                          count);
+}
+
+Points StaticSystem::displacement(const std::vector<Load>& loads) const {
+  const Data& d = *data_;
+  Eigen::VectorXd internal;
+  double residual = 0.0;
+  int iterations = 0;
+  const Eigen::VectorXd u =
+      d.displace(load_vector(d.mesh, d.material, loads), internal, residual, iterations);
+  return Eigen::Map<const Points>(u.data(), d.mesh.nodes.rows(), 3);
+}
+
+BucklingModes StaticSystem::buckling_modes(const Points& displacement, int count) const {
+  const Data& d = *data_;
+  if (!d.factor) {
+    return codesign::fem::buckling_modes(d.mesh, d.material, d.supports, displacement, count);
+  }
+  return buckling_of_factor(d.mesh, d.material, d.pattern, *d.factor, displacement, count);
 }
 
 StaticResult solve_static(const StaticModel& model) {

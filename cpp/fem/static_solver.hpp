@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "fem/buckling.hpp"
 #include "fem/loads.hpp"
 #include "fem/material.hpp"
 #include "fem/natural_modes.hpp"
@@ -80,6 +81,13 @@ class StaticSystem {
   // The lowest modes on the supports, from the same factor if there is one. Throws SolverError,
   // std::invalid_argument: no density, count < 1.
   NaturalModes natural_modes(int count) const;
+
+  // The displacement (n, 3) m of a load case alone. Throws SolverError as solve does.
+  Points displacement(const std::vector<Load>& loads) const;
+
+  // The lowest buckling modes under the load case that gives a displacement, from the same factor
+  // if there is one. Throws SolverError, std::invalid_argument: count < 1.
+  BucklingModes buckling_modes(const Points& displacement, int count) const;
 
   const TetMesh& mesh() const;
 

@@ -194,6 +194,26 @@ LowerMatrix assemble(const TetMesh& mesh, const NodePattern& pattern, const Elem
   return a;
 }
 
+using NodeMatrix = Eigen::Matrix<double, kTetNodes, kTetNodes>;
+
+// Element matrix that acts on each of the three components alike.
+void spread(const NodeMatrix& m, ElementMatrix& k) {
+  k.setZero();
+  for (int j = 0; j < kTetNodes; ++j) {
+    for (int i = 0; i < kTetNodes; ++i) {
+      k.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(m(i, j));
+    }
+  }
+}
+
+// Stress (Pa) of a displacement field at a point of an element.
+Eigen::Matrix3d stress_tensor(double lambda, double mu, const TetNodes& u, const TetGradients& g) {
+  const Eigen::Matrix3d h = u * g.transpose();  // d u_i / d x_j
+  Eigen::Matrix3d stress = mu * (h + h.transpose());
+  stress.diagonal().array() += lambda * h.trace();
+  return stress;
+}
+
 }  // namespace
 
 LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
@@ -212,17 +232,29 @@ LowerMatrix assemble_mass(const TetMesh& mesh, const Material& material,
   TetPoints points;
   return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
     evaluate_tet(tet_nodes(mesh, e), rule, points);
-    Eigen::Matrix<double, kTetNodes, kTetNodes> m = decltype(m)::Zero();
+    NodeMatrix m = NodeMatrix::Zero();
     for (int q = 0; q < points.count; ++q) {
       m.noalias() +=
           (material.density * points.weights[at(q)] * values[at(q)]) * values[at(q)].transpose();
     }
-    k.setZero();
-    for (int j = 0; j < kTetNodes; ++j) {
-      for (int i = 0; i < kTetNodes; ++i) {
-        k.block<3, 3>(3 * i, 3 * j).diagonal().setConstant(m(i, j));
-      }
+    spread(m, k);
+  });
+}
+
+LowerMatrix assemble_geometric_stiffness(const TetMesh& mesh, const Material& material,
+                                         const Eigen::VectorXd& displacement,
+                                         const NodePattern& pattern) {
+  const double lambda = lame_lambda(material), mu = shear_modulus(material);
+  TetPoints points;
+  return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
+    const TetNodes u = tet_displacements(mesh, e, displacement);
+    evaluate_tet(tet_nodes(mesh, e), tet_rule_14(), points);
+    NodeMatrix m = NodeMatrix::Zero();
+    for (int q = 0; q < points.count; ++q) {
+      const TetGradients& g = points.gradients[at(q)];
+      m.noalias() += points.weights[at(q)] * (g.transpose() * stress_tensor(lambda, mu, u, g) * g);
     }
+    spread(m, k);
   });
 }
 
@@ -255,18 +287,13 @@ InternalForces internal_forces(const TetMesh& mesh, const Material& material,
   InternalForces f{Eigen::VectorXd::Zero(displacement.size()),
                    Eigen::VectorXd::Zero(displacement.size())};
   TetPoints points;
-  TetNodes u;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
-    const TetNodes x = tet_nodes(mesh, e);
+    const TetNodes x = tet_nodes(mesh, e), u = tet_displacements(mesh, e, displacement);
     evaluate_tet(x, stiffness_rule(x), points);
-    for (int i = 0; i < kTetNodes; ++i) u.col(i) = displacement.segment<3>(3 * mesh.tets(e, i));
     TetNodes force = TetNodes::Zero();
     for (int q = 0; q < points.count; ++q) {
       const TetGradients& g = points.gradients[at(q)];
-      const Eigen::Matrix3d h = u * g.transpose();  // d u_i / d x_j
-      Eigen::Matrix3d stress = mu * (h + h.transpose());
-      stress.diagonal().array() += lambda * h.trace();
-      force.noalias() += points.weights[at(q)] * (stress * g);
+      force.noalias() += points.weights[at(q)] * (stress_tensor(lambda, mu, u, g) * g);
     }
     for (int i = 0; i < kTetNodes; ++i) {
       f.sum.segment<3>(3 * mesh.tets(e, i)) += force.col(i);

@@ -35,6 +35,13 @@ LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
 LowerMatrix assemble_mass(const TetMesh& mesh, const Material& material,
                           const NodePattern& pattern);
 
+// Geometric (initial-stress) stiffness of the free components, N/m, with the same structure:
+// integral of (grad N_a · sigma · grad N_b) I, sigma the stress of a displacement field (3 n, m).
+// 14 points: the integrand is of degree 3 on a straight element.
+LowerMatrix assemble_geometric_stiffness(const TetMesh& mesh, const Material& material,
+                                         const Eigen::VectorXd& displacement,
+                                         const NodePattern& pattern);
+
 // Stiffness seen by displacements that are linear over each element (exact also on curved ones):
 // `pattern` numbers corner nodes only, mid-edge nodes follow the mean of their ends where they are
 // free in `constraints`. Symmetric positive definite wherever the stiffness is.

@@ -14,10 +14,9 @@ PointStresses point_stresses(const TetMesh& mesh, const Material& material,
   result.stress.resize(4 * mesh.tets.rows(), 6);
   result.volume.resize(4 * mesh.tets.rows());
   TetPoints points;
-  TetNodes u;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
     evaluate_tet(tet_nodes(mesh, e), tet_rule_4(), points);
-    for (int i = 0; i < kTetNodes; ++i) u.col(i) = displacement.segment<3>(3 * mesh.tets(e, i));
+    const TetNodes u = tet_displacements(mesh, e, displacement);
     for (int q = 0; q < 4; ++q) {
       const Eigen::Matrix3d h = u * points.gradients[static_cast<std::size_t>(q)].transpose();
       result.stress.row(4 * e + q) = stress_of_gradient(lambda, mu, h).transpose();

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
@@ -32,7 +33,8 @@ class StressSettings:
     geometry: "simplified" or "full" (see the part). load, support: variant names that a part may offer.
     accuracy: "optimisation" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
     error and its change are within the tolerance. exclusion_distance: [m] from clamps and from borders of loaded faces
-    within which the peak stress is not read. tolerance: wanted relative error of the peak stress.
+    within which the peak stress is not read. tolerance: wanted relative error of the peak stress. modes, buckling: how
+    many natural frequencies and buckling factors are wanted.
     """
 
     material: fem.Material
@@ -45,6 +47,7 @@ class StressSettings:
     exclusion_distance: float = 3e-3
     tolerance: float = 0.05
     modes: int = 0
+    buckling: int = 0
 
     @property
     def segments(self) -> int:
@@ -110,11 +113,12 @@ def native_case(
         max_refinements=MAX_REFINEMENTS if settings.accuracy == "converged" else 0,
     )
     case.modes = settings.modes
+    case.buckling = settings.buckling
     return case
 
 
 def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
-    """Numbers of one part for JSON, SI units."""
+    """Numbers of one part for JSON, SI units; `buckling_factor` is None if the load cannot buckle the part."""
     result = analysis.result
     optional: dict[str, Any] = {}
     if analysis.refinements:
@@ -122,6 +126,9 @@ def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
     if len(analysis.frequencies):
         optional["first_frequency"] = float(analysis.frequencies[0])
         optional["frequencies"] = [float(f) for f in analysis.frequencies]
+    if len(analysis.buckling_factors):
+        lowest = float(analysis.buckling_factors[0])
+        optional["buckling_factor"] = lowest if math.isfinite(lowest) else None
     return {
         "mass": float(mass.mass),
         "com": [float(x) for x in mass.com],

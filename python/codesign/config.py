@@ -270,7 +270,8 @@ class ObjectivesConfig(Section, frozen=True, kw_only=True):
 class ConstraintsConfig(Section, frozen=True, kw_only=True):
     """What a design must satisfy. Clearances need the section [interference]; None: reported only.
 
-    first_frequency_min_hz: of each part on its supports; None: not computed.
+    first_frequency_min_hz: of each part on its supports; None: not computed. buckling_factor_min: of each part, the
+    multiple of its load at which it buckles; None: not computed.
     """
 
     safety_factor_min: Positive = 10.0
@@ -278,6 +279,17 @@ class ConstraintsConfig(Section, frozen=True, kw_only=True):
     body_clearance_min_mm: float | None = None
     plume_clearance_min_mm: float | None = None
     first_frequency_min_hz: Positive | None = None
+    buckling_factor_min: Positive | None = None
+
+    @property
+    def part_minima(self) -> dict[str, float]:
+        """What every part must reach: name of the number in its document -> lower limit."""
+        limits = {
+            "safety_factor": self.safety_factor_min,
+            "first_frequency": self.first_frequency_min_hz,
+            "buckling_factor": self.buckling_factor_min,
+        }
+        return {name: limit for name, limit in limits.items() if limit is not None}
 
 
 class ValidationConfig(Section, frozen=True, kw_only=True):

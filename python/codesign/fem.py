@@ -31,12 +31,21 @@ from codesign.fem_model import (
     select_nodes,
     select_union,
 )
-from codesign.fem_static import Modes, StaticResult, StaticSystem, natural_frequencies, solve_static
+from codesign.fem_static import (
+    Buckling,
+    Modes,
+    StaticResult,
+    StaticSystem,
+    buckling_factors,
+    natural_frequencies,
+    solve_static,
+)
 
 __all__ = [
     "Acceleration",
     "AffineTraction",
     "BodyForce",
+    "Buckling",
     "Disc",
     "Force",
     "Load",
@@ -55,6 +64,7 @@ __all__ = [
     "SurfaceMesh",
     "TetMesh",
     "Traction",
+    "buckling_factors",
     "faces_in_box",
     "faces_near",
     "faces_with_normal",

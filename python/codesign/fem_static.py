@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -32,6 +33,33 @@ class Modes:
         """From the native result."""
         count = len(native.frequency)
         return cls(np.array(native.frequency), np.array(native.shape).T.reshape(count, -1, 3))
+
+
+@dataclass(frozen=True)
+class Buckling:
+    """Linear buckling of a part under a load that keeps its direction.
+
+    factor: (k,) of the load, > 0, ascending; fewer than asked for if there are no more up to the limit.
+    shape: (k, n, 3), the largest displacement is 1. reversed: lowest factor of the reversed load; inf: none.
+    limit: the factor up to which was sought, at most the one that stresses 1 % of the part beyond a quarter of the
+    shear modulus.
+    """
+
+    factor: NDArray[np.float64]
+    shape: NDArray[np.float64]
+    reversed: float
+    limit: float
+
+    @property
+    def lowest(self) -> float:
+        """The lowest factor; inf if there is none up to the limit."""
+        return float(self.factor[0]) if len(self.factor) else math.inf
+
+    @classmethod
+    def of(cls, native: _core.BucklingModes) -> Buckling:
+        """From the native result."""
+        factor, shape = np.array(native.factor), np.array(native.shape)
+        return cls(factor, shape.T.reshape(len(factor), len(shape) // 3, 3), native.reversed, native.limit)
 
 
 class StaticSystem:
@@ -88,6 +116,11 @@ class StaticSystem:
         """The lowest modes on the supports, from the same factor if there is one. Raises: ValueError: no density."""
         return Modes.of(self._system.natural_modes(count))
 
+    def buckling_factors(self, loads: Sequence[Load], count: int = 1) -> Buckling:
+        """The lowest buckling modes under one load case, from the same factor if there is one."""
+        displacement = self._system.displacement(native_loads(self.mesh, loads))
+        return Buckling.of(self._system.buckling_modes(displacement, count))
+
 
 def solve_static(
     mesh: TetMesh,
@@ -123,3 +156,13 @@ def natural_frequencies(mesh: TetMesh, material: Material, supports: Sequence[Su
     Raises: ValueError: no density, count < 1; MeshError, SolverError.
     """
     return Modes.of(_core.natural_modes(mesh, material, native_supports(mesh, supports), count))
+
+
+def buckling_factors(
+    mesh: TetMesh, material: Material, supports: Sequence[Support], loads: Sequence[Load], count: int = 1
+) -> Buckling:
+    """The lowest buckling modes of a part on its supports under a load.
+
+    Raises: ValueError: count < 1; MeshError; SolverError: the part is not held, or the eigenvalues do not converge.
+    """
+    return StaticSystem(mesh, material, supports).buckling_factors(loads, count)

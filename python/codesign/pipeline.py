@@ -32,6 +32,11 @@ from codesign.urdf import RobotDescription
 
 CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
 MODES = 3  # natural frequencies of a part, where a study limits the first
+TOO_LOW = {  # what a part misses, in words
+    "safety_factor": "safety factor {:.2f} below {:g}",
+    "first_frequency": "first natural frequency {:.1f} Hz below {:g} Hz",
+    "buckling_factor": "buckling factor {:.2f} below {:g}",
+}
 CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a safety factor of zero
 
 if TYPE_CHECKING:
@@ -147,6 +152,7 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
         exclusion_distance=stress.exclusion_distance_mm * MILLIMETRE,
         tolerance=stress.tolerance,
         modes=0 if config.constraints.first_frequency_min_hz is None else MODES,
+        buckling=0 if config.constraints.buckling_factor_min is None else 1,
     )
 
 
@@ -295,17 +301,13 @@ def _constraints(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Constraint values, and by how much of its limit each is violated (0: it holds)."""
     lost = not flight.completed
-    smallest = min((part["safety_factor"] for part in parts.values()), default=math.inf)
     constraints = {"qp_failures": float(max(flight.qp_failures, int(lost)))}
     violations = {}
-    if parts:
-        required = config.constraints.safety_factor_min
-        constraints["safety_factor"] = smallest
-        violations["safety_factor"] = max(0.0, (required - smallest) / required)
-    lowest = config.constraints.first_frequency_min_hz
-    if parts and lowest is not None:
-        constraints["first_frequency"] = min(part["first_frequency"] for part in parts.values())
-        violations["first_frequency"] = max(0.0, (lowest - constraints["first_frequency"]) / lowest)
+    for name, limit in config.constraints.part_minima.items() if parts else ():
+        smallest = min(_number(part, name) for part in parts.values())
+        if math.isfinite(smallest):
+            constraints[name] = smallest
+        violations[name] = max(0.0, (limit - smallest) / limit)
     if config.constraints.flight_completed:
         # The share of the flight that was missed: of two lost designs the one that flew longer is better.
         flown = (flight.failure_time or 0.0) / config.flight.duration_s
@@ -316,6 +318,11 @@ def _constraints(
     return constraints, violations
 
 
+def _number(part: Mapping[str, Any], name: str) -> float:
+    """A number of a part's document; infinite where it has none: a load that cannot buckle the part."""
+    return math.inf if part[name] is None else float(part[name])
+
+
 def _reason(
     config: StudyConfig,
     parts: Mapping[str, Mapping[str, Any]],
@@ -323,17 +330,11 @@ def _reason(
     clearances: Mapping[str, Any],
 ) -> str:
     reasons = [
-        f"{name}: safety factor {part['safety_factor']:.2f} below {config.constraints.safety_factor_min:g}"
+        f"{name}: {TOO_LOW[key].format(_number(part, key), limit)}"
+        for key, limit in config.constraints.part_minima.items()
         for name, part in parts.items()
-        if part["safety_factor"] < config.constraints.safety_factor_min
+        if _number(part, key) < limit
     ]
-    lowest = config.constraints.first_frequency_min_hz
-    if lowest is not None:
-        reasons += [
-            f"{name}: first natural frequency {part['first_frequency']:.1f} Hz below {lowest:g} Hz"
-            for name, part in parts.items()
-            if part["first_frequency"] < lowest
-        ]
     if not flight.completed:
         reasons.append(_flight_reason(flight))
     for name, (value, limit) in _short_clearances(config, clearances).items():

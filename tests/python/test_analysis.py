@@ -7,6 +7,7 @@ import pytest
 
 from codesign import _core, fem
 from codesign.analysis import PressedFace, StressSettings, confirm, default_case, part_case
+from codesign.evaluation import Evaluation
 from codesign.geometry.part import Part, parameter
 from codesign.geometry.profile import Path, Resolution, circle
 from codesign.geometry.shape import Extrusion, Shape
@@ -107,6 +108,27 @@ def test_a_study_may_limit_the_first_frequency(tmp_path):
     assert 10.0 < result.constraints["first_frequency"] < 1e5
     assert result.violations["first_frequency"] == pytest.approx(1 - result.constraints["first_frequency"] / 1e5)
     assert len(result.parts["strut"]["frequencies"]) == 3
+
+
+@pytest.mark.parametrize("width", [24.0, 3.0], ids=["bar", "blade"])
+def test_a_study_may_limit_the_buckling_factor(tmp_path, width):
+    """The shipped bar cannot buckle, a blade turns over sideways."""
+    new_study(tmp_path / "study")
+    file, part = tmp_path / "study" / "study.toml", tmp_path / "study" / "strut.py"
+    file.write_text(file.read_text().replace("[constraints]", "[constraints]\nbuckling_factor_min = 10"))
+    part.write_text(part.read_text().replace("WIDTH, SEAT_RADIUS = 12.0, 24.0", f"WIDTH, SEAT_RADIUS = 12.0, {width}"))
+    result = load_study(file).evaluate({"reach": 200, "height": 30})
+    factor = result.parts["strut"]["buckling_factor"]
+    if width == 24.0:
+        assert factor is None
+        assert "buckling_factor" not in result.constraints
+        assert result.violations["buckling_factor"] == 0.0
+        assert Evaluation.from_json(result.to_json()) == result
+    else:
+        assert 0.5 < factor < 5.0
+        assert result.constraints["buckling_factor"] == factor
+        assert result.violations["buckling_factor"] == pytest.approx(1 - factor / 10)
+        assert f"strut: buckling factor {factor:.2f} below 10" in (result.reason or "")
 
 
 def test_no_node_overshoots_where_a_patch_hardly_determines_its_stress():

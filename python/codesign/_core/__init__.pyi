@@ -43,6 +43,13 @@ class PartCase:
         max_refinements: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
     @property
+    def buckling(self) -> int:
+        """
+        buckling factors wanted
+        """
+    @buckling.setter
+    def buckling(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
     def loads(
         self,
     ) -> list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]: ...
@@ -80,6 +87,11 @@ class PartAnalysis:
     """
     Mesh, static result and wall-clock times.
     """
+    @property
+    def buckling_factors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (buckling,) of the load, ascending, of the whole part; inf where there is none
+        """
     @property
     def change(self) -> float:
         """

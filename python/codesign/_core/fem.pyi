@@ -13,6 +13,7 @@ __all__: list[str] = [
     "Acceleration",
     "AffineTraction",
     "BodyForce",
+    "BucklingModes",
     "Disc",
     "Force",
     "LinearSolver",
@@ -549,6 +550,31 @@ class NaturalModes:
         (3 n, k) columns, modal mass 1 kg
         """
 
+class BucklingModes:
+    """
+    Linear buckling of a part under a load.
+    """
+    @property
+    def factor(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (k,) of the load, > 0, ascending
+        """
+    @property
+    def limit(self) -> float:
+        """
+        factor up to which was sought
+        """
+    @property
+    def reversed(self) -> float:
+        """
+        lowest factor of the load reversed; inf: none
+        """
+    @property
+    def shape(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (3 n, k) columns, the largest node moves 1
+        """
+
 class StaticSystem:
     """
     A model factorised once for many load cases.
@@ -556,6 +582,17 @@ class StaticSystem:
     def __init__(
         self, mesh: TetMesh, material: Material, supports: collections.abc.Sequence[Support], settings: StaticSettings
     ) -> None: ...
+    def buckling_modes(
+        self,
+        displacement: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+        count: typing.SupportsInt | typing.SupportsIndex,
+    ) -> BucklingModes: ...
+    def displacement(
+        self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (n, 3) m, of one load case
+        """
     def natural_modes(self, count: typing.SupportsInt | typing.SupportsIndex) -> NaturalModes: ...
     def solve(
         self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]

@@ -66,8 +66,13 @@ CONSTRAINTS = {
     "safety_factor": Quantity(
         "safety_factor", "Safety factor", "", "Yield strength over peak stress of the weakest part."
     ),
+    "first_frequency": Quantity(
+        "first_frequency", "First natural frequency", "Hz", "Lowest frequency of a part on its supports."
+    ),
+    "buckling_factor": Quantity(
+        "buckling_factor", "Buckling factor", "", "Multiple of its load at which the first part buckles."
+    ),
     "qp_failures": Quantity("qp_failures", "Controller failures", "", "Control steps without a solution."),
-    "first_frequency": Quantity("first_frequency", "First frequency", "Hz", "Lowest natural frequency of any part."),
     "body_clearance": Quantity(
         "body_clearance", "Body clearance", "mm", "Smallest gap beside the parts; below 0 they overlap.", 1 / MILLIMETRE
     ),

@@ -52,13 +52,9 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
 def _limits(study: Any) -> dict[str, tuple[str, float]]:
     """What the study demands of its constraints, SI units."""
     asked = study.config.constraints
-    lowest = {
-        "safety_factor": (asked.safety_factor_min, 1.0),
-        "first_frequency": (asked.first_frequency_min_hz, 1.0),
-        "body_clearance": (asked.body_clearance_min_mm, MILLIMETRE),
-        "plume_clearance": (asked.plume_clearance_min_mm, MILLIMETRE),
-    }
-    limits = {key: (">=", value * unit) for key, (value, unit) in lowest.items() if value is not None}
+    gaps = {"body_clearance": asked.body_clearance_min_mm, "plume_clearance": asked.plume_clearance_min_mm}
+    lowest = asked.part_minima | {name: gap * MILLIMETRE for name, gap in gaps.items() if gap is not None}
+    limits = {name: (">=", limit) for name, limit in lowest.items()}
     return limits | ({"qp_failures": ("<=", 0.0)} if asked.flight_completed else {})
 
 
