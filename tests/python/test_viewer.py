@@ -96,6 +96,7 @@ def test_the_browser_shows_the_robot_and_plays_the_flight(browser, viewer):
         page.get_by_role("button", name="Pause").wait_for()
         page.wait_for_timeout(2500)
         page.get_by_role("button", name="Pause").click()
+        page.get_by_role("button", name="Play").wait_for()  # the server has answered
         assert 0.5 < viewer.time < 30.0
         assert not viewer.playing
         page.wait_for_timeout(500)
