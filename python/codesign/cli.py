@@ -346,16 +346,25 @@ def view(
     study: StudyOption = DEFAULT_STUDY,
     trajectory: TrajectoryOption = None,
     port: Annotated[int, typer.Option(help="Of the page on this machine.")] = 8080,
+    record: Annotated[
+        Path | None, typer.Option(metavar="FILE.html", help="Write the flight as a page that needs no server instead.")
+    ] = None,
 ) -> int:
     """3-D viewer in the browser: robot, parts coloured by stress, flight playback. Ctrl-C ends it."""
+    from codesign import viewer
     from codesign.study import load_study
-    from codesign.viewer import view as start_view
 
     if (run_dir is None) == (not set_):
         raise DesignError("view needs either the folder of a run or a design by --set")
     design = parse_design(set_) if set_ else None
     shown = load_study(study) if design else None
-    start_view(shown, design, run_directory=run_dir, trajectory=trajectory, port=port).wait()
+    if record is not None:
+        written = viewer.record(record, shown, design, run_directory=run_dir, trajectory=trajectory)
+        out.print(str(written), soft_wrap=True, highlight=False)
+        return 0
+    running = viewer.view(shown, design, run_directory=run_dir, trajectory=trajectory, port=port)
+    print(f"viewer: {running.address} (Ctrl-C ends it)", flush=True)  # noqa: T201 - at once, also into a pipe
+    running.wait()
     return 0
 
 

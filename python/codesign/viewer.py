@@ -18,6 +18,8 @@ from typing import Any
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
 
 from codesign.errors import CodesignError
 from codesign.evaluation import Evaluation
@@ -34,6 +36,8 @@ from codesign.transforms import Matrix
 FRAMES_PER_SECOND = 20.0
 RECORDED_PER_SECOND = 12.5
 NEWTONS_PER_METRE = 400.0  # of the thrust arrows
+SRGB_EXPONENT = 2.2  # of screen colours, roughly
+CLOSE = 2.0  # m from the robot to the camera that follows it
 SPEEDS = {"¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "4 ×": 4.0}
 PART = (0, 114, 178)
 ARROW = (230, 122, 20)
@@ -248,8 +252,9 @@ class Viewer:
         scene.configure_environment_map(None)  # the maps would be fetched from another host
         scene.enable_default_lights(cast_shadow=False)
         scene.add_light_ambient("/light/ambient", intensity=1.2)
+        self._world = scene.add_frame("/world", show_axes=False)  # moves under the robot while the camera follows it
         scene.add_grid(
-            "/ground", width=40.0, height=40.0, cell_size=0.5, section_size=1.0, cell_color=(225, 227, 230),
+            "/world/ground", width=40.0, height=40.0, cell_size=0.5, section_size=1.0, cell_color=(225, 227, 230),
             section_color=(205, 208, 212), fade_distance=25.0,
         )  # fmt: skip
         self._server.gui.configure_theme(
@@ -259,19 +264,21 @@ class Viewer:
     def _build_scene(self) -> None:
         scene = self._server.scene
         with self._server.atomic():
-            scene.remove_by_name("/robot")
-            scene.remove_by_name("/path")
-            self._frames = {link: scene.add_frame(f"/robot/{link}", show_axes=False) for link in self._scene.links}
+            scene.remove_by_name("/world/robot")
+            scene.remove_by_name("/world/path")
+            self._frames = {
+                link: scene.add_frame(f"/world/robot/{link}", show_axes=False) for link in self._scene.links
+            }
             self._part_meshes: list[tuple[Any, Any]] = []
             for n, piece in enumerate(self._scene.pieces):
-                self._add_piece(f"/robot/{piece.link}/{n}", piece)
+                self._add_piece(f"/world/robot/{piece.link}/{n}", piece)
             if self._flight is not None:
                 none = np.zeros((len(self._flight.jets), 2, 3))
                 self._arrows = scene.add_arrows(
-                    "/robot/thrusts", none, ARROW, shaft_radius=0.012, head_radius=0.03, head_length=0.06
+                    "/world/robot/thrusts", none, ARROW, shaft_radius=0.012, head_radius=0.03, head_length=0.06
                 )
-                self._add_path("/path/reference", self._flight["com_reference"], REFERENCE)
-                self._add_path("/path/flown", self._flight["com"], PATH)
+                self._add_path("/world/path/reference", self._flight["com_reference"], REFERENCE)
+                self._add_path("/world/path/flown", self._flight["com"], PATH)
         self._show_layers()
         self._aim()
 
@@ -285,9 +292,8 @@ class Viewer:
         colour = PART if piece.part else tuple(int(255 * c) for c in piece.colour)
         plain = scene.add_mesh_simple(name, points, triangles, color=colour, flat_shading=True)
         if piece.part is not None and piece.values is not None:
-            highest = float(self._detail_shown.parts[piece.part].von_mises.max())
-            tint = np.rint(255 * stress_tint(piece.values, highest)).astype(np.uint8)
-            coloured = trimesh.Trimesh(points, triangles, vertex_colors=tint, process=False)
+            highest = self._detail_shown.parts[piece.part].peak  # what the safety factor is made from
+            coloured = _coloured(piece.points, triangles, stress_tint(piece.values, highest))
             stressed = scene.add_mesh_trimesh(f"{name}_stress", coloured)
             self._part_meshes.append((plain, stressed))
 
@@ -296,19 +302,23 @@ class Viewer:
         self._server.scene.add_line_segments(name, segments.astype(np.float32), colour, thickness=0.012)
 
     def _aim(self) -> None:
-        """Puts the camera so that it sees the whole flight from the robot's front left."""
+        """Puts all cameras, also those to come, to the robot's front left: near it, or where its whole path is seen."""
         if self._flight is None:
             return
         start, path = self._flight["com"][0], self._flight["com"]
-        middle = (path.min(axis=0) + path.max(axis=0)) / 2.0
-        extent = max(2.5, float(np.linalg.norm(path.max(axis=0) - path.min(axis=0))))
+        target, distance = start, CLOSE
+        if not self._follow.value:
+            target = 0.5 * (start + (path.min(axis=0) + path.max(axis=0)) / 2.0)
+            distance = max(CLOSE, float(np.linalg.norm(np.ptp(path, axis=0))))
         ahead = self._flight["base_rotation"][0, :, 0]
         side = np.array([-ahead[1], ahead[0], 0.0])
-        camera = self._server.initial_camera
-        camera.look_at = tuple(0.5 * (middle + start))
-        camera.position = tuple(
-            0.5 * (middle + start) + extent * (0.4 * ahead + 0.65 * side + np.array([0.0, 0.0, 0.25]))
-        )
+        position = target + distance * (0.4 * ahead + 0.65 * side + np.array([0.0, 0.0, 0.25]))
+        for camera in (self._server.initial_camera, *(client.camera for client in self._server.get_clients().values())):
+            camera.position, camera.look_at = tuple(position), tuple(target)
+
+    def _follow_or_not(self) -> None:
+        self._pose(self._k)
+        self._aim()
 
     def _compute_motion(self) -> None:
         """Places of all links and arrows at all samples, once a design."""
@@ -332,13 +342,15 @@ class Viewer:
                 frame.wxyz, frame.position = turns[k], places[k]
             if self._flight is not None:
                 self._arrows.points = self._arrow_points[k]
+                way = self._flight["com"][0] - self._flight["com"][k]
+                self._world.position = tuple(way) if self._follow.value else (0.0, 0.0, 0.0)
 
     def _show_layers(self) -> None:
         for plain, stressed in self._part_meshes:
             stressed.visible, plain.visible = self._stress.value, not self._stress.value
         if self._flight is not None:
             self._arrows.visible = self._thrusts.value
-            for name in ("/path/reference", "/path/flown"):
+            for name in ("/world/path/reference", "/world/path/flown"):
                 handle = self._server.scene.get_handle_by_name(name)
                 if handle is not None:
                     handle.visible = self._trail.value
@@ -351,6 +363,7 @@ class Viewer:
         self._button = gui.add_button("Play")
         self._slider = gui.add_slider("Time (s)", 0.0, 42.0, 0.04, 0.0)
         self._speed = gui.add_dropdown("Speed", list(SPEEDS), initial_value="1 ×")
+        self._follow = gui.add_checkbox("Camera follows the robot", True)
         with gui.add_folder("Show"):
             self._stress = gui.add_checkbox("Stress on the parts", True)
             self._thrusts = gui.add_checkbox(f"Thrusts (1 m is {NEWTONS_PER_METRE:g} N)", True)
@@ -359,6 +372,7 @@ class Viewer:
         self._picker.on_update(lambda _: self.show(self._picker.value))
         self._button.on_click(lambda _: setattr(self._button, "label", "Play" if self.playing else "Pause"))
         self._slider.on_update(lambda event: self.go_to(self._slider.value) if event.client is not None else None)
+        self._follow.on_update(lambda _: self._follow_or_not())
         for layer in (self._stress, self._thrusts, self._trail):
             layer.on_update(lambda _: self._show_layers())
 
@@ -398,6 +412,15 @@ class Viewer:
             if part.get("safety_factor"):
                 lines.append(f"{name.replace('_', ' ')}: safety factor **{part['safety_factor']:.1f}**")
         return "\n\n".join(lines)
+
+
+def _coloured(points: Array, triangles: NDArray[Any], colours: NDArray[Any]) -> trimesh.Trimesh:
+    """A mesh with a colour (n, 3), 0 … 1, at each point; its material is no metal, which is black without a sky."""
+    material = PBRMaterial(metallicFactor=0.0, roughnessFactor=0.9)  # type: ignore[no-untyped-call]
+    visual = TextureVisuals(material=material)  # type: ignore[no-untyped-call]
+    linear = np.column_stack([colours**SRGB_EXPONENT, np.ones(len(colours))])  # as glTF has it
+    visual.vertex_attributes["color"] = np.rint(255 * linear).astype(np.uint8)
+    return trimesh.Trimesh(points, triangles, visual=visual, process=False)
 
 
 def _placed(poses: Matrix) -> tuple[Array, Array]:

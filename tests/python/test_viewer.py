@@ -1,8 +1,11 @@
 """The viewer: what it shows without a browser, and in a real one."""
 
+import json
 import os
 import re
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -69,6 +72,38 @@ def test_another_design_is_shown_on_request(viewer):
     assert "angle: **15**" in viewer.facts
     viewer.show("recommended")
     assert "angle: **15**" not in viewer.facts
+
+
+def test_the_world_passes_under_a_robot_that_the_camera_follows(viewer):
+    viewer.show("recommended")
+    viewer.go_to(12.0)
+    assert np.linalg.norm(viewer._world.position) > 0.5
+    viewer._follow.value = False
+    viewer._follow_or_not()
+    assert tuple(viewer._world.position) == (0.0, 0.0, 0.0)
+    viewer._follow.value = True
+    viewer.go_to(0.0)
+    assert tuple(viewer._world.position) == (0.0, 0.0, 0.0)
+
+
+def test_stress_colours_are_lit_like_paint_not_like_metal():
+    mesh = viewing._coloured(np.eye(3), np.array([[0, 1, 2]]), np.array([[1.0, 0.0, 0.0]] * 3))
+    data = mesh.export(file_type="glb")
+    document = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+    assert document["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] == 0.0
+    assert "COLOR_0" in document["meshes"][0]["primitives"][0]["attributes"]
+
+
+def test_the_command_says_where_the_page_is_and_records_flights(tmp_path):
+    command = [sys.executable, "-m", "codesign.cli", "view", "--study", "gimbal_quad", "--set", "reach=200"]
+    command += ["--set", "height=30", "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert re.match(r"viewer: http://127\.0\.0\.1:\d+ ", process.stdout.readline())
+        finally:
+            process.terminate()
+    subprocess.run([*command, "--record", str(tmp_path / "flight.html")], check=True, stdout=subprocess.DEVNULL)
+    assert 1e5 < (tmp_path / "flight.html").stat().st_size < 15e6
 
 
 def test_nothing_to_show_is_a_clear_error(tmp_path):
