@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace codesign::fem {
 namespace {
@@ -13,9 +14,20 @@ using Eigen::Vector3d;
 
 constexpr double kInPlane = 2e-6;     // of the extent: rounding of coordinates in a file
 constexpr double kNoCorner = 0.03;    // rad, turn of an outline that is no corner
-constexpr double kAlike = 0.5;        // of the turn of a circular arc: enough to belong to it
-constexpr double kNoTurn = 0.3;       // of that turn: a flat
-constexpr double kWide = 2.5;         // times as wide as its neighbour: not a chord of the same arc
+constexpr double kOpposite = 0.4;      // of the width: distance of an opposite side
+constexpr double kWide = 2.5;         // times as wide as its neighbour: hardly a chord of the same arc
+constexpr double kMisfit = 0.25;      // of the turns that explain a bend
+constexpr double kMisfitAngle = 0.02; // rad
+constexpr int kPasses = 4;
+
+// A border edge of a planar region where the surface goes on smoothly.
+struct RegionSide {
+  int region, from, to;  // points, counter-clockwise
+  double turn;           // of the normal to the region across, rad; negative where concave
+  double width;          // of the region, measured from the edge, m
+  int twin;              // the same edge seen from the other region
+  bool curved;           // the region is a chord of a surface that is curved across the edge
+};
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -36,115 +48,175 @@ double width_from(const SurfaceMesh& surface, const std::vector<int>& triangles,
   return width;
 }
 
-// Triangle or convex quadrangle, points on its sides not counted.
-bool has_few_corners(const SurfaceMesh& surface, const Neighbours& neighbours,
-                     const PlanarRegions& regions, int region) {
+// The next point of a region's outline after each; empty if the outline meets itself.
+std::map<int, int> outline_of(const SurfaceMesh& surface, const Neighbours& neighbours,
+                              const PlanarRegions& regions, int region) {
   std::map<int, int> next;
   for (const int t : regions.triangles[at(region)])
     for (int k = 0; k < 3; ++k) {
       const int other = neighbours[at(t)][at(k)];
       if (other >= 0 && regions.of_triangle[at(other)] == region) continue;
       if (!next.emplace(surface.triangles(t, k), surface.triangles(t, (k + 1) % 3)).second)
-        return false;  // the outline meets itself
+        return {};
     }
+  return next;
+}
+
+// Corners of a convex outline, points on its sides not counted; 0 if it is not convex or has holes.
+int count_corners(const SurfaceMesh& surface, const std::map<int, int>& next,
+                  const Vector3d& normal) {
+  if (next.empty()) return 0;
   int corners = 0;
   std::size_t steps = 0;
   int p = next.begin()->first;
   do {
-    const int q = next[p], r = next[q];
+    const int q = next.at(p), r = next.at(q);
     const Vector3d in = (point(surface, q) - point(surface, p)).normalized();
     const Vector3d out = (point(surface, r) - point(surface, q)).normalized();
-    const double turn = std::atan2(in.cross(out).dot(regions.normal[at(region)]), in.dot(out));
-    if (turn < -kNoCorner) return false;
+    const double turn = std::atan2(in.cross(out).dot(normal), in.dot(out));
+    if (turn < -kNoCorner) return 0;
     if (turn > kNoCorner) ++corners;
     p = q;
   } while (++steps < next.size() && p != next.begin()->first);
-  return steps == next.size() && corners <= 4;  // else a hole
+  return steps == next.size() ? corners : 0;
 }
 
-std::vector<std::vector<RegionSide>> smooth_sides(const SurfaceMesh& surface,
-                                                  const Neighbours& neighbours,
-                                                  const PlanarRegions& regions,
-                                                  double feature_angle) {
-  std::vector<std::vector<RegionSide>> sides(regions.triangles.size());
-  for (std::size_t t = 0; t < neighbours.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[t][at(k)];
-      if (other < 0) continue;
-      const int r = regions.of_triangle[t], s = regions.of_triangle[at(other)];
-      const Vector3d &n = regions.normal[at(r)], &m = regions.normal[at(s)];
-      const double turn = std::atan2(n.cross(m).norm(), n.dot(m));
-      if (r == s || turn > feature_angle) continue;
-      const auto row = static_cast<Eigen::Index>(t);
-      const int from = surface.triangles(row, k), to = surface.triangles(row, (k + 1) % 3);
-      const Vector3d a = point(surface, from), b = point(surface, to);
-      const bool convex = n.cross(m).dot(b - a) > 0.0;
-      sides[at(r)].push_back({s, from, to, convex ? turn : -turn,
-                              width_from(surface, regions.triangles[at(r)], a, b),
-                              width_from(surface, regions.triangles[at(s)], a, b)});
+// Decides which regions are curved, and across which of their sides.
+class ChordFinder {
+ public:
+  ChordFinder(const SurfaceMesh& surface, const Neighbours& neighbours, PlanarRegions& regions,
+              double feature_angle)
+      : surface_(surface), regions_(regions), sides_of_(regions.triangles.size()) {
+    const int n = static_cast<int>(regions.triangles.size());
+    find_sides(neighbours, feature_angle);
+    for (int r = 0; r < n; ++r) {
+      outline_.push_back(outline_of(surface, neighbours, regions, r));
+      corners_.push_back(count_corners(surface, outline_.back(), regions.normal[at(r)]));
+      regions.flat.push_back(sides_of_[at(r)].empty() ||
+                             (corners_.back() != 3 && corners_.back() != 4));
     }
-  return sides;
-}
-
-double curvature(const RegionSide& side) { return 2.0 * side.turn / (side.width + side.beyond); }
-
-// Turn [rad] of the region across a side, from its other sides; 0 if nothing is known.
-double turn_across(const SurfaceMesh& surface, const RegionSide& side,
-                   const std::vector<RegionSide>& of_other, const std::vector<bool>& flat) {
-  const Vector3d a = point(surface, side.from), b = point(surface, side.to);
-  double most = 0.0;
-  for (const RegionSide& far : of_other) {
-    const Vector3d middle = 0.5 * (point(surface, far.from) + point(surface, far.to));
-    if (from_line(middle, a, b) < 0.4 * side.beyond || far.turn * side.turn <= 0.0) continue;
-    const double bend = flat[at(far.other)] ? 2.0 * far.turn : curvature(far) * side.beyond;
-    if (std::abs(bend) > std::abs(most)) most = bend;
   }
-  return most;
-}
 
-struct Votes {
-  int flat = 0, curved = 0;
+  void run() {
+    for (pass_ = 0; pass_ < kPasses; ++pass_) {
+      std::vector<bool> curved;
+      for (const RegionSide& side : sides_) curved.push_back(is_curved_across(side));
+      for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i].curved = curved[i];
+      for (std::size_t r = 0; r < sides_of_.size(); ++r)
+        regions_.flat[r] = regions_.flat[r] || !is_curved(static_cast<int>(r));
+    }
+    flatten_single();
+    for (int r = 0; r < std::ssize(sides_of_); ++r)
+      if (!regions_.flat[at(r)] && corners_[at(r)] == 4) add_straight(r);
+  }
+
+ private:
+  const RegionSide& twin(const RegionSide& side) const { return sides_[at(side.twin)]; }
+  bool flat(const RegionSide& side) const { return regions_.flat[at(side.region)]; }
+  bool wide(const RegionSide& side) const { return side.width > kWide * twin(side).width; }
+
+  void find_sides(const Neighbours& neighbours, double feature_angle) {
+    std::map<std::pair<int, int>, int> directed;
+    for (int t = 0; t < std::ssize(neighbours); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const int other = neighbours[at(t)][at(k)];
+        if (other < 0) continue;
+        const int r = regions_.of_triangle[at(t)], s = regions_.of_triangle[at(other)];
+        const Vector3d &n = regions_.normal[at(r)], &m = regions_.normal[at(s)];
+        const double turn = std::atan2(n.cross(m).norm(), n.dot(m));
+        if (r == s || turn > feature_angle) continue;
+        const int from = surface_.triangles(t, k), to = surface_.triangles(t, (k + 1) % 3);
+        const Vector3d a = point(surface_, from), b = point(surface_, to);
+        const bool convex = n.cross(m).dot(b - a) > 0.0;
+        directed[{from, to}] = static_cast<int>(sides_.size());
+        sides_of_[at(r)].push_back(static_cast<int>(sides_.size()));
+        sides_.push_back({r, from, to, convex ? turn : -turn,
+                          width_from(surface_, regions_.triangles[at(r)], a, b), -1, false});
+      }
+    for (RegionSide& side : sides_) side.twin = directed.at({side.to, side.from});
+  }
+
+  // Whether the region across a side is not curved there, as far as is known.
+  bool runs_straight(const RegionSide& side) const {
+    return flat(side) || (pass_ == 0 ? wide(side) : !side.curved);
+  }
+
+  // Turn [rad] of a region away from a side, from the bends at its opposite sides; 0 if unknown.
+  double turn_from(const RegionSide& side) const {
+    if (flat(side)) return 0.0;
+    const Vector3d a = point(surface_, side.from), b = point(surface_, side.to);
+    double most = 0.0;
+    for (const int i : sides_of_[at(side.region)]) {
+      const RegionSide& far = sides_[at(i)];
+      const auto touches = [&](int p) { return p == far.from || p == far.to; };
+      if (corners_[at(side.region)] != 3 && (touches(side.from) || touches(side.to))) continue;
+      const Vector3d middle = 0.5 * (point(surface_, far.from) + point(surface_, far.to));
+      if (from_line(middle, a, b) < kOpposite * side.width || runs_straight(far)) continue;
+      const double turn = runs_straight(twin(far))
+                              ? 2.0 * far.turn
+                              : 2.0 * far.turn / (far.width + twin(far).width) * side.width;
+      if (std::abs(turn) > std::abs(most)) most = turn;
+    }
+    return most;
+  }
+
+  bool is_curved_across(const RegionSide& side) const {
+    const RegionSide& there = twin(side);
+    if (flat(side)) return false;
+    // Triangles have no opposite sides that would tell.
+    if (corners_[at(side.region)] == 3 || corners_[at(there.region)] == 3) return !wide(side);
+    const double known = turn_from(side), known_there = turn_from(there);
+    const double most = std::max(std::abs(known), std::abs(known_there));
+    if (most == 0.0) return false;
+    // What is unknown has the curvature of the other one.
+    const double mine = known != 0.0 ? known : known_there * side.width / there.width;
+    const double other = known_there != 0.0 ? known_there : known * there.width / side.width;
+    constexpr double kNever = 1e9;
+    const bool can = pass_ > 0 || !wide(side), can_there = pass_ > 0 || !wide(there);
+    const double both =
+        can && can_there && !flat(there) ? std::abs(side.turn - 0.5 * (mine + other)) : kNever;
+    const double only = can && known != 0.0 ? std::abs(side.turn - 0.5 * mine) : kNever;
+    const double only_there =
+        can_there && known_there != 0.0 ? std::abs(side.turn - 0.5 * other) : kNever;
+    const double best = std::min(both, only);
+    return best <= only_there && best <= kMisfit * most + kMisfitAngle;
+  }
+
+  bool is_curved(int region) const {
+    const auto& sides = sides_of_[at(region)];
+    return std::any_of(sides.begin(), sides.end(), [&](int i) { return sides_[at(i)].curved; });
+  }
+
+  // A curved region between flats is a chamfer.
+  void flatten_single() {
+    std::vector<bool>& flat = regions_.flat;
+    const std::vector<bool> before = flat;
+    for (std::size_t r = 0; r < flat.size(); ++r)
+      flat[r] = flat[r] || std::all_of(sides_of_[r].begin(), sides_of_[r].end(), [&](int i) {
+                  return before[at(twin(sides_[at(i)]).region)];
+                });
+  }
+
+  void add_straight(int region) {
+    const std::map<int, int>& next = outline_[at(region)];
+    std::map<int, int> before;
+    for (const auto& [p, q] : next) before[q] = p;
+    for (const int i : sides_of_[at(region)]) {
+      const RegionSide& side = sides_[at(i)];
+      if (side.curved) continue;
+      regions_.straight.push_back(
+          {region, side.from, side.to, before.at(side.from), next.at(side.to)});
+    }
+  }
+
+  const SurfaceMesh& surface_;
+  PlanarRegions& regions_;
+  std::vector<RegionSide> sides_;
+  std::vector<std::vector<int>> sides_of_;  // regions
+  std::vector<std::map<int, int>> outline_;
+  std::vector<int> corners_;
+  int pass_ = 0;
 };
-
-// What the sides of a triangle or quadrangle say about it.
-Votes ask_sides(const SurfaceMesh& surface, const std::vector<std::vector<RegionSide>>& sides,
-                const std::vector<bool>& flat, int region, double feature_angle) {
-  Votes votes;
-  for (const RegionSide& side : sides[at(region)]) {
-    const double expected = std::abs(curvature(side)) * side.width;
-    const bool wide = side.width > kWide * side.beyond;
-    if (flat[at(side.other)]) continue;
-    const double across = turn_across(surface, side, sides[at(side.other)], flat);
-    const double turn = (2.0 * side.turn - across) * (side.turn < 0.0 ? -1.0 : 1.0);
-    if (wide || turn > feature_angle || (across != 0.0 && turn < kNoTurn * expected))
-      ++votes.flat;
-    else if (across != 0.0 && turn >= kAlike * expected)
-      ++votes.curved;
-  }
-  return votes;
-}
-
-// Regions connected through smooth sides, flats apart, in which nothing says that it is curved.
-void flatten_unproven(const std::vector<std::vector<RegionSide>>& sides,
-                      const std::vector<Votes>& votes, std::vector<bool>& flat) {
-  std::vector<bool> seen = flat;
-  for (std::size_t seed = 0; seed < flat.size(); ++seed) {
-    if (seen[seed]) continue;
-    std::vector<int> group{static_cast<int>(seed)};
-    seen[seed] = true;
-    int curved = 0;
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      curved += votes[at(group[i])].curved;
-      for (const RegionSide& side : sides[at(group[i])])
-        if (!seen[at(side.other)]) {
-          seen[at(side.other)] = true;
-          group.push_back(side.other);
-        }
-    }
-    if (curved == 0 || group.size() < 2)
-      for (const int region : group) flat[at(region)] = true;
-  }
-}
 
 }  // namespace
 
@@ -185,20 +257,7 @@ PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& 
 
 void mark_flat_regions(const SurfaceMesh& surface, const Neighbours& neighbours,
                        PlanarRegions& regions, double feature_angle) {
-  const auto sides = smooth_sides(surface, neighbours, regions, feature_angle);
-  const std::size_t n = regions.triangles.size();
-  std::vector<bool> flat(n);
-  std::vector<Votes> votes(n);
-  for (std::size_t r = 0; r < n; ++r)
-    flat[r] = sides[r].empty() ||
-              !has_few_corners(surface, neighbours, regions, static_cast<int>(r));
-  regions.flat = flat;
-  for (std::size_t r = 0; r < n; ++r) {
-    if (flat[r]) continue;
-    votes[r] = ask_sides(surface, sides, flat, static_cast<int>(r), feature_angle);
-    regions.flat[r] = votes[r].flat > 0 && votes[r].curved == 0;
-  }
-  flatten_unproven(sides, votes, regions.flat);
+  ChordFinder(surface, neighbours, regions, feature_angle).run();
 }
 
 }  // namespace codesign::fem

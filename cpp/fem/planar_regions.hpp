@@ -8,15 +8,6 @@
 
 namespace codesign::fem {
 
-// A border edge of a planar region where the surface goes on smoothly.
-struct RegionSide {
-  int other;      // region across
-  int from, to;   // points
-  double turn;    // of the normal from this region to the other, rad; negative where concave
-  double width;   // of this region, measured from the edge, m
-  double beyond;  // width of the other region, m
-};
-
 // Pieces of the surface whose triangles lie in one plane: faces of the solid, or single chords of
 // a curved face.
 struct PlanarRegions {
@@ -24,16 +15,25 @@ struct PlanarRegions {
   std::vector<std::vector<int>> triangles;  // of each region
   std::vector<Eigen::Vector3d> normal;      // unit, outward
   std::vector<bool> flat;                   // a face of the solid, which stays as it is
+  // Edges across which a quadrangle runs straight on, as a cylinder does into the fillet at its
+  // end: the sides of the quadrangle that lead there from both ends of the edge, as a point of the
+  // edge and the next one of the outline.
+  struct Straight {
+    int region, from, to;  // the edge, counter-clockwise
+    int before, after;     // points of the outline beside it
+  };
+  std::vector<Straight> straight;
 };
 
 // Groups triangles into planes, largest first; `flat` is left empty.
 PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& neighbours);
 
 // Tells faces of the solid from chords of curved ones. A tangent-continuous surface whose planar
-// pieces R and S turn by t(R) and t(S) bends by (t(R) + t(S)) / 2 at their common edge, whether it
-// is an arc, or a flat (turn 0) that runs into a fillet; t(S) follows from the edge beyond S. Flat
-// is also what is no triangle or convex quadrangle, what would turn by more than `feature_angle`
-// [rad], what is far wider than its neighbours, and whatever has only flat neighbours (a chamfer).
+// pieces R and S turn by t(R) and t(S) bends by (t(R) + t(S)) / 2 at their common edge; a turn is 0
+// where a flat or a straight line of a cylinder runs into a fillet, and negative where the surface
+// is concave. t(R) and t(S) follow from the edges opposite to the common one; which of them are 0
+// is what explains the bend there. Where nothing does, the edge is a crease and both run straight
+// on. Flat is what is curved nowhere, and what is no triangle or convex quadrangle.
 void mark_flat_regions(const SurfaceMesh& surface, const Neighbours& neighbours,
                        PlanarRegions& regions, double feature_angle);
 

@@ -4,6 +4,8 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace codesign::fem {
 namespace {
@@ -11,6 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPrior = 0.2;      // weight of the first guess against that of an edge
+constexpr double kRuling = 3.0;     // weight of a straight line that runs into a fillet
 constexpr int kSolves = 3;          // the equations are linear in small turns only
 constexpr int kCreaseRounds = 4;    // of finding creases below the feature angle
 constexpr double kSameFlat = 3e-3;  // rad, between flats that are one
@@ -136,6 +139,10 @@ class NormalFit {
       if (!regions_.flat[at(regions_.of_triangle[at(t)])])
         for (int k = 0; k < 3; ++k)
           if (!inside_plane(t, k)) add_edge(t, k);
+    for (const auto& side : regions_.straight) {
+      add_ruling(side.region, side.from, side.before);
+      add_ruling(side.region, side.to, side.after);
+    }
     Eigen::SparseMatrix<double> matrix(2 * free_, 2 * free_);
     matrix.setFromTriplets(terms_.begin(), terms_.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
@@ -159,9 +166,24 @@ class NormalFit {
     const std::array<std::size_t, 2> ends{at(sectors_.of_corner[at(3 * t + k)]),
                                           at(sectors_.of_corner[at(3 * t + next)])};
     const Vector3d along = (corner(surface_, t, next) - corner(surface_, t, k)).normalized();
+    add_row({ends.begin(), ends.end()}, along);
+  }
+
+  // The normal at point p of a region is perpendicular to the side that leads to q.
+  void add_ruling(int region, int p, int q) {
+    const Vector3d along =
+        (surface_.points.row(q) - surface_.points.row(p)).transpose().normalized();
+    for (const int t : regions_.triangles[at(region)])
+      for (int k = 0; k < 3; ++k)
+        if (surface_.triangles(t, k) == p)
+          return add_row({at(sectors_.of_corner[at(3 * t + k)])}, kRuling * along);
+  }
+
+  // Sum of the normals of sectors times a vector = 0.
+  void add_row(const std::vector<std::size_t>& sectors, const Vector3d& along) {
     double misfit = 0.0;
     std::vector<std::pair<int, double>> row;
-    for (const std::size_t s : ends) {
+    for (const std::size_t s : sectors) {
       if (normals_.singular[s]) continue;
       misfit += normals_.normal[s].dot(along);
       for (int j = 0; j < 2 && unknown_[s] >= 0; ++j)
@@ -243,6 +265,28 @@ bool mark_creases(const Neighbours& neighbours, SmoothNormals& found) {
   return any;
 }
 
+// Edges sharper than the feature angle, and those where neither side is curved.
+void mark_sharp(const SurfaceMesh& surface, const Neighbours& neighbours, double feature_angle,
+                SmoothNormals& found) {
+  const PlanarRegions& regions = found.regions;
+  std::set<std::pair<int, int>> straight;  // region, first point
+  for (const auto& side : regions.straight) straight.insert({side.region, side.from});
+  const auto runs_on = [&](int region, int from) {
+    return regions.flat[at(region)] || straight.count({region, from}) > 0;
+  };
+  for (int t = 0; t < std::ssize(neighbours); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int other = neighbours[at(t)][at(k)];
+      if (other < 0) continue;
+      const int r = regions.of_triangle[at(t)], s = regions.of_triangle[at(other)];
+      const double cosine = regions.normal[at(r)].dot(regions.normal[at(s)]);
+      found.sharp[at(t)][at(k)] =
+          r != s && (cosine < std::cos(feature_angle) ||
+                     (runs_on(r, surface.triangles(t, k)) &&
+                      runs_on(s, surface.triangles(t, (k + 1) % 3))));
+    }
+}
+
 }  // namespace
 
 SmoothNormals find_smooth_normals(const SurfaceMesh& surface, double feature_angle) {
@@ -254,14 +298,7 @@ SmoothNormals find_smooth_normals(const SurfaceMesh& surface, double feature_ang
                       std::vector<bool>(n),
                       find_planar_regions(surface, neighbours)};
   mark_flat_regions(surface, neighbours, found.regions, feature_angle);
-  const auto& [of_triangle, triangles, normal, flat] = found.regions;
-  for (std::size_t t = 0; t < n; ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (neighbours[t][k] < 0) continue;
-      const int r = of_triangle[t], s = of_triangle[at(neighbours[t][k])];
-      found.sharp[t][k] = normal[at(r)].dot(normal[at(s)]) < std::cos(feature_angle) ||
-                          (r != s && flat[at(r)] && flat[at(s)]);
-    }
+  mark_sharp(surface, neighbours, feature_angle, found);
   const double cosine = std::cos(kOfFeature * feature_angle);
   solve_normals(surface, neighbours, cosine, found);
   for (int i = 0; i < kCreaseRounds && mark_creases(neighbours, found); ++i)
