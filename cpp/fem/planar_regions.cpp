@@ -19,6 +19,10 @@ constexpr double kWide = 2.5;         // times as wide as its neighbour: hardly 
 constexpr double kMisfit = 0.25;      // of the turns that explain a bend
 constexpr double kMisfitAngle = 0.02; // rad
 constexpr int kPasses = 4;
+constexpr int kDepth = 2;             // regions beyond an edge that are asked for their turn
+constexpr double kTie = 0.05;         // of those turns: two arcs are likelier than one and a flat
+constexpr double kStraight = 0.01;    // rad: no turn
+constexpr double kNever = 1e9;        // rad
 
 // A border edge of a planar region where the surface goes on smoothly.
 struct RegionSide {
@@ -141,23 +145,35 @@ class ChordFinder {
     return flat(side) || (pass_ == 0 ? wide(side) : !side.curved);
   }
 
-  // Turn [rad] of a region away from a side, from the bends at its opposite sides; 0 if unknown.
-  double turn_from(const RegionSide& side) const {
-    if (flat(side)) return 0.0;
+  // What the turn [rad] of a region away from a side may be, from the bends at its opposite sides;
+  // nothing is known of triangles.
+  std::vector<double> turns_from(const RegionSide& side, int depth) const {
+    std::vector<double> turns;
+    if (flat(side) || corners_[at(side.region)] == 3) return turns;
     const Vector3d a = point(surface_, side.from), b = point(surface_, side.to);
-    double most = 0.0;
     for (const int i : sides_of_[at(side.region)]) {
       const RegionSide& far = sides_[at(i)];
       const auto touches = [&](int p) { return p == far.from || p == far.to; };
-      if (corners_[at(side.region)] != 3 && (touches(side.from) || touches(side.to))) continue;
+      if (touches(side.from) || touches(side.to)) continue;
       const Vector3d middle = 0.5 * (point(surface_, far.from) + point(surface_, far.to));
       if (from_line(middle, a, b) < kOpposite * side.width || runs_straight(far)) continue;
-      const double turn = runs_straight(twin(far))
-                              ? 2.0 * far.turn
-                              : 2.0 * far.turn / (far.width + twin(far).width) * side.width;
-      if (std::abs(turn) > std::abs(most)) most = turn;
+      add_turns(far, depth, turns);
     }
-    return most;
+    return turns;
+  }
+
+  // The turn that explains the bend at a side if the region across is straight, or has the same
+  // curvature, or turns by what is known from beyond it (an inflection, another radius).
+  void add_turns(const RegionSide& side, int depth, std::vector<double>& turns) const {
+    const RegionSide& there = twin(side);
+    if (runs_straight(there)) {
+      turns.push_back(2.0 * side.turn);
+      return;
+    }
+    turns.push_back(2.0 * side.turn / (side.width + there.width) * side.width);
+    if (depth == 0) return;
+    for (const double other : turns_from(there, depth - 1))
+      turns.push_back(2.0 * side.turn - other);
   }
 
   bool is_curved_across(const RegionSide& side) const {
@@ -165,21 +181,29 @@ class ChordFinder {
     if (flat(side)) return false;
     // Triangles have no opposite sides that would tell.
     if (corners_[at(side.region)] == 3 || corners_[at(there.region)] == 3) return !wide(side);
-    const double known = turn_from(side), known_there = turn_from(there);
-    const double most = std::max(std::abs(known), std::abs(known_there));
-    if (most == 0.0) return false;
-    // What is unknown has the curvature of the other one.
-    const double mine = known != 0.0 ? known : known_there * side.width / there.width;
-    const double other = known_there != 0.0 ? known_there : known * there.width / side.width;
-    constexpr double kNever = 1e9;
+    const std::vector<double> mine = turns_from(side, kDepth), other = turns_from(there, kDepth);
     const bool can = pass_ > 0 || !wide(side), can_there = pass_ > 0 || !wide(there);
-    const double both =
-        can && can_there && !flat(there) ? std::abs(side.turn - 0.5 * (mine + other)) : kNever;
-    const double only = can && known != 0.0 ? std::abs(side.turn - 0.5 * mine) : kNever;
-    const double only_there =
-        can_there && known_there != 0.0 ? std::abs(side.turn - 0.5 * other) : kNever;
-    const double best = std::min(both, only);
-    return best <= only_there && best <= kMisfit * most + kMisfitAngle;
+    double most = 0.0, both = kNever, only = kNever, only_there = kNever;
+    const auto try_both = [&](double a, double b) {
+      if (can && can_there && !flat(there))
+        both = std::min(both, std::abs(side.turn - 0.5 * (a + b)));
+    };
+    for (const double a : mine) {
+      most = std::max(most, std::abs(a));
+      if (can) only = std::min(only, std::abs(side.turn - 0.5 * a));
+      // What is unknown has the curvature of the other one.
+      if (other.empty()) try_both(a, a * there.width / side.width);
+      for (const double b : other)
+        if (std::min(std::abs(a), std::abs(b)) > kStraight) try_both(a, b);
+    }
+    for (const double b : other) {
+      most = std::max(most, std::abs(b));
+      if (can_there) only_there = std::min(only_there, std::abs(side.turn - 0.5 * b));
+      if (mine.empty()) try_both(b * side.width / there.width, b);
+    }
+    const double one = std::min(only, only_there);
+    if (std::min(both, one) > kMisfit * most + kMisfitAngle) return false;
+    return both <= one + kTie * most || only <= only_there;
   }
 
   bool is_curved(int region) const {
@@ -197,16 +221,26 @@ class ChordFinder {
                 });
   }
 
+  // The sides across which a quadrangle is not curved, sharp ones too if the opposite one is not.
   void add_straight(int region) {
     const std::map<int, int>& next = outline_[at(region)];
     std::map<int, int> before;
+    std::map<int, bool> curved;  // by the first point of a smooth side
     for (const auto& [p, q] : next) before[q] = p;
-    for (const int i : sides_of_[at(region)]) {
-      const RegionSide& side = sides_[at(i)];
-      if (side.curved) continue;
-      regions_.straight.push_back(
-          {region, side.from, side.to, before.at(side.from), next.at(side.to)});
+    for (const int i : sides_of_[at(region)]) curved[sides_[at(i)].from] = sides_[at(i)].curved;
+    for (const auto& [p, q] : next) {
+      const auto found = curved.find(p);
+      if (found == curved.end() ? is_opposite_curved(region, p, q) : found->second) continue;
+      regions_.straight.push_back({region, p, q, before.at(p), next.at(q)});
     }
+  }
+
+  bool is_opposite_curved(int region, int p, int q) const {
+    const auto& sides = sides_of_[at(region)];
+    return std::any_of(sides.begin(), sides.end(), [&](int i) {
+      const RegionSide& side = sides_[at(i)];
+      return side.curved && side.from != p && side.from != q && side.to != p && side.to != q;
+    });
   }
 
   const SurfaceMesh& surface_;

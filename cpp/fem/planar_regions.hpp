@@ -15,9 +15,8 @@ struct PlanarRegions {
   std::vector<std::vector<int>> triangles;  // of each region
   std::vector<Eigen::Vector3d> normal;      // unit, outward
   std::vector<bool> flat;                   // a face of the solid, which stays as it is
-  // Edges across which a quadrangle runs straight on, as a cylinder does into the fillet at its
-  // end: the sides of the quadrangle that lead there from both ends of the edge, as a point of the
-  // edge and the next one of the outline.
+  // Edges of quadrangles across which these are straight, as a cylinder is towards the fillet or
+  // the sharp edge at its end.
   struct Straight {
     int region, from, to;  // the edge, counter-clockwise
     int before, after;     // points of the outline beside it

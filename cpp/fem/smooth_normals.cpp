@@ -1,5 +1,6 @@
 #include "fem/smooth_normals.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 #include <cmath>
@@ -14,6 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kPrior = 0.2;      // weight of the first guess against that of an edge
 constexpr double kRuling = 3.0;     // weight of a straight line that runs into a fillet
+constexpr double kCylinder = 2e-3;   // smallest over middle spread of a cylinder's normals
 constexpr int kSolves = 3;          // the equations are linear in small turns only
 constexpr int kCreaseRounds = 4;    // of finding creases below the feature angle
 constexpr double kSameFlat = 3e-3;  // rad, between flats that are one
@@ -103,11 +105,12 @@ SectorNormals first_guess(const SurfaceMesh& surface, const PlanarRegions& regio
 class NormalFit {
  public:
   NormalFit(const SurfaceMesh& surface, const Neighbours& neighbours, const PlanarRegions& regions,
-            const Sectors& sectors, SectorNormals& normals)
+            const Sectors& sectors, const std::vector<Vector3d>& axis, SectorNormals& normals)
       : surface_(surface),
         neighbours_(neighbours),
         regions_(regions),
         sectors_(sectors),
+        axis_(axis),
         normals_(normals),
         guess_(normals.normal),
         unknown_(normals.normal.size(), -1) {
@@ -143,6 +146,9 @@ class NormalFit {
       add_ruling(side.region, side.from, side.before);
       add_ruling(side.region, side.to, side.after);
     }
+    for (int t = 0; t < surface_.triangles.rows(); ++t)
+      for (int k = 0; k < 3 && axis_[at(t)] != Vector3d::Zero(); ++k)
+        add_row({at(sectors_.of_corner[at(3 * t + k)])}, kRuling * axis_[at(t)]);
     Eigen::SparseMatrix<double> matrix(2 * free_, 2 * free_);
     matrix.setFromTriplets(terms_.begin(), terms_.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
@@ -199,6 +205,7 @@ class NormalFit {
   const Neighbours& neighbours_;
   const PlanarRegions& regions_;
   const Sectors& sectors_;
+  const std::vector<Vector3d>& axis_;  // of the cylinder of each triangle, or zero
   SectorNormals& normals_;
   std::vector<Vector3d> guess_;
   std::vector<int> unknown_;  // first of the two of a sector, or -1
@@ -207,6 +214,48 @@ class NormalFit {
   std::vector<Eigen::Triplet<double>> terms_;
   Eigen::VectorXd right_;
 };
+
+// Axis of the cylinder (of any cross-section) each triangle belongs to, as told by the normals of
+// the regions connected with it; zero if none. Without it a rod's ends leave open whether its
+// straight lines are bulged.
+std::vector<Vector3d> cylinder_axes(const SurfaceMesh& surface, const Neighbours& neighbours,
+                                    const SmoothNormals& found) {
+  const PlanarRegions& regions = found.regions;
+  std::set<std::pair<int, int>> straight;  // region, first point
+  for (const auto& side : regions.straight) straight.insert({side.region, side.from});
+  const auto n = static_cast<int>(regions.triangles.size());
+  std::vector<int> parent(at(n));
+  std::iota(parent.begin(), parent.end(), 0);
+  for (int t = 0; t < std::ssize(neighbours); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int other = neighbours[at(t)][at(k)], r = regions.of_triangle[at(t)];
+      if (other < 0 || found.sharp[at(t)][at(k)]) continue;
+      const int s = regions.of_triangle[at(other)];
+      if (regions.flat[at(r)] || regions.flat[at(s)] ||
+          straight.count({r, surface.triangles(t, k)}) ||
+          straight.count({s, surface.triangles(t, (k + 1) % 3)}))
+        continue;
+      parent[at(root(parent, r))] = root(parent, s);
+    }
+  std::vector<Eigen::Matrix3d> spread(at(n), Eigen::Matrix3d::Zero());
+  std::vector<int> members(at(n), 0);
+  std::vector<Vector3d> axis(neighbours.size(), Vector3d::Zero());
+  for (int r = 0; r < n; ++r) {
+    double area = 0.0;
+    for (const int t : regions.triangles[at(r)]) area += triangle_area(surface, t);
+    const Vector3d& normal = regions.normal[at(r)];
+    spread[at(root(parent, r))] += area * normal * normal.transpose();
+    ++members[at(root(parent, r))];
+  }
+  for (int r = 0; r < n; ++r) {
+    const int group = root(parent, r);
+    if (members[at(group)] < 3) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread[at(group)]);
+    if (eigen.eigenvalues()[0] > kCylinder * eigen.eigenvalues()[1]) continue;
+    for (const int t : regions.triangles[at(r)]) axis[at(t)] = eigen.eigenvectors().col(0);
+  }
+  return axis;
+}
 
 // Whether the normals at the corners are those of a surface of which triangle t is a chord.
 bool fits(const SurfaceMesh& surface, const SmoothNormals& found, int t, double cosine) {
@@ -235,7 +284,8 @@ void solve_normals(const SurfaceMesh& surface, const Neighbours& neighbours, dou
                    SmoothNormals& found) {
   const Sectors sectors = find_sectors(surface, neighbours, found.sharp);
   SectorNormals normals = first_guess(surface, found.regions, sectors, cosine);
-  NormalFit(surface, neighbours, found.regions, sectors, normals).run();
+  const std::vector<Vector3d> axis = cylinder_axes(surface, neighbours, found);
+  NormalFit(surface, neighbours, found.regions, sectors, axis, normals).run();
   for (int t = 0; t < surface.triangles.rows(); ++t) {
     const int region = found.regions.of_triangle[at(t)];
     const bool flat = found.regions.flat[at(region)];
