@@ -82,7 +82,7 @@ int count_corners(const SurfaceMesh& surface, const std::map<int, int>& next,
     if (turn > kNoCorner) ++corners;
     p = q;
   } while (++steps < next.size() && p != next.begin()->first);
-  return steps == next.size() ? corners : 0;
+  return steps == next.size() ? std::max(corners, 3) : 0;  // 3 in a needle too
 }
 
 // Decides which regions are curved, and across which of their sides.

@@ -14,6 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPrior = 0.2;      // weight of the first guess against that of an edge
+constexpr double kVague = 0.02;     // its weight at a corner of a curved face, seen from one side
 constexpr double kRuling = 3.0;     // weight of a straight line that runs into a fillet
 constexpr double kCylinder = 2e-3;   // smallest over middle spread of a cylinder's normals
 constexpr int kSolves = 3;          // the equations are linear in small turns only
@@ -68,16 +69,25 @@ Sectors find_sectors(const SurfaceMesh& surface, const Neighbours& neighbours,
 struct SectorNormals {
   std::vector<Vector3d> normal;
   std::vector<bool> held, singular;
+  std::vector<double> angle;  // of the triangles at the point, together, rad
 };
+
+// Angle [rad] of the triangles at a point of a straight border, or all around: the guess is that of
+// both sides.
+bool is_balanced(double angle) { return (angle > 2.6 && angle < 3.7) || angle > 5.0; }
 
 SectorNormals first_guess(const SurfaceMesh& surface, const PlanarRegions& regions,
                           const Sectors& sectors, double cosine) {
   const auto n = at(sectors.count);
   SectorNormals guess{std::vector<Vector3d>(n, Vector3d::Zero()), std::vector<bool>(n, false),
-                      std::vector<bool>(n, false)};
+                      std::vector<bool>(n, false), std::vector<double>(n, 0.0)};
   for (int i = 0; i < std::ssize(sectors.of_corner); ++i) {
     const int t = i / 3, k = i % 3, region = regions.of_triangle[at(t)];
     const std::size_t s = at(sectors.of_corner[at(i)]);
+    const Vector3d p = corner(surface, t, k);
+    const Vector3d a = corner(surface, t, (k + 1) % 3) - p;
+    const Vector3d b = corner(surface, t, (k + 2) % 3) - p;
+    guess.angle[s] += std::atan2(a.cross(b).norm(), a.dot(b));
     if (regions.flat[at(region)]) {
       const Vector3d& normal = regions.normal[at(region)];
       if (guess.held[s] && guess.normal[s].cross(normal).norm() > kSameFlat)
@@ -85,9 +95,6 @@ SectorNormals first_guess(const SurfaceMesh& surface, const PlanarRegions& regio
       if (!guess.held[s]) guess.normal[s] = normal;
       guess.held[s] = true;
     } else if (!guess.held[s]) {
-      const Vector3d p = corner(surface, t, k);
-      const Vector3d a = corner(surface, t, (k + 1) % 3) - p;
-      const Vector3d b = corner(surface, t, (k + 2) % 3) - p;
       guess.normal[s] += a.cross(b) / (a.squaredNorm() * b.squaredNorm());
     }
   }
@@ -132,10 +139,11 @@ class NormalFit {
       if (unknown_[s] < 0) continue;
       const Vector3d& n = normals_.normal[s];
       axes_[s] = {n.unitOrthogonal(), n.cross(n.unitOrthogonal())};
+      const double weight = is_balanced(normals_.angle[s]) ? kPrior * kPrior : kVague * kVague;
       for (int j = 0; j < 2; ++j) {
         const Vector3d& axis = axes_[s][at(j)];
-        terms_.emplace_back(unknown_[s] + j, unknown_[s] + j, kPrior * kPrior);
-        right_[unknown_[s] + j] += kPrior * kPrior * axis.dot(guess_[s] - n);
+        terms_.emplace_back(unknown_[s] + j, unknown_[s] + j, weight);
+        right_[unknown_[s] + j] += weight * axis.dot(guess_[s] - n);
       }
     }
     for (int t = 0; t < surface_.triangles.rows(); ++t)
