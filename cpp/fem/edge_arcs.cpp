@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 constexpr double kPieceTurn = 0.18;    // rad, of a piece of any arc
 constexpr double kLeastTurn = 0.09;    // rad, of a piece of a large arc,
 constexpr double kChordError = 3e-4;   // one farther than this part of the extent from its chord
+constexpr double kShortest = 1e-3;     // piece, of the extent: the mesher would collapse it
 constexpr int kMostHalvings = 5;
 constexpr double kNoTurn = 1e-9;      // rad: straight
 constexpr double kClearLine = 0.26;   // sine of the angle of two sides whose intersection is clear
@@ -190,7 +191,8 @@ Vector3d EdgeArc::at(double x) const {
 }
 
 bool too_coarse(double turn, double length, double extent) {
-  return turn > kPieceTurn || (turn > kLeastTurn && turn * length / 8.0 > kChordError * extent);
+  return length > 2.0 * kShortest * extent &&
+         (turn > kPieceTurn || (turn > kLeastTurn && turn * length / 8.0 > kChordError * extent));
 }
 
 EdgeArcs find_edge_arcs(const SurfaceMesh& surface, const SmoothNormals& normals,

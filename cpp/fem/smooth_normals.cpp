@@ -87,7 +87,8 @@ SectorNormals first_guess(const SurfaceMesh& surface, const PlanarRegions& regio
     const Vector3d p = corner(surface, t, k);
     const Vector3d a = corner(surface, t, (k + 1) % 3) - p;
     const Vector3d b = corner(surface, t, (k + 2) % 3) - p;
-    guess.angle[s] += std::atan2(a.cross(b).norm(), a.dot(b));
+    const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+    guess.angle[s] += angle;
     if (regions.flat[at(region)]) {
       const Vector3d& normal = regions.normal[at(region)];
       if (guess.held[s] && guess.normal[s].cross(normal).norm() > kSameFlat)
@@ -95,7 +96,7 @@ SectorNormals first_guess(const SurfaceMesh& surface, const PlanarRegions& regio
       if (!guess.held[s]) guess.normal[s] = normal;
       guess.held[s] = true;
     } else if (!guess.held[s]) {
-      guess.normal[s] += a.cross(b) / (a.squaredNorm() * b.squaredNorm());
+      guess.normal[s] += angle * regions.normal[at(region)];
     }
   }
   for (Vector3d& normal : guess.normal) normal.normalize();
