@@ -15,16 +15,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPieceTurn = 0.18;    // rad, of a piece of any arc
-constexpr double kLeastTurn = 0.09;    // rad, of a piece of a large arc,
-constexpr double kChordError = 3e-4;   // one farther than this part of the extent from its chord
-constexpr double kShortest = 1e-3;     // piece, of the extent: the mesher would collapse it
+constexpr double kPieceTurn = 0.18;   // rad, of a piece of any arc
+constexpr double kLeastTurn = 0.09;   // rad, of a piece of a large arc,
+constexpr double kChordError = 3e-4;  // one farther than this part of the extent from its chord
+constexpr double kShortest = 1e-3;    // piece, of the extent: the mesher would collapse it
 constexpr int kMostHalvings = 5;
-constexpr double kNoTurn = 1e-9;      // rad: straight
-constexpr double kClearLine = 0.26;   // sine of the angle of two sides whose intersection is clear
-constexpr double kOfFeature = 0.75;   // of the feature angle: between arc and chord
-constexpr double kLopsided = 0.5;     // of their sum: difference of both ends' angles to the chord
-constexpr double kAlike = 0.5;        // smaller over larger curvature of a border's neighbouring arcs
+constexpr double kNoTurn = 1e-9;     // rad: straight
+constexpr double kClearLine = 0.26;  // sine of the angle of two sides whose intersection is clear
+constexpr double kOfFeature = 0.75;  // of the feature angle: between arc and chord
+constexpr double kLopsided = 0.5;    // of their sum: difference of both ends' angles to the chord
+constexpr double kAlike = 0.5;  // smaller over larger curvature of a border's neighbouring arcs
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -98,7 +98,8 @@ class ArcFinder {
       else if (is_rim(other, j))
         tangents = rim_tangents(region(other), a, b);
       else if (!flat(t) || !flat(other))
-        tangents = {tangent(t, k, k, other, (j + 1) % 3, b), tangent(t, k, (k + 1) % 3, other, j, b)};
+        tangents = {tangent(t, k, k, other, (j + 1) % 3, b),
+                    tangent(t, k, (k + 1) % 3, other, j, b)};
     }
     EdgeArc arc = bend(point(a), point(b), tangents, is_smooth(t, k) ? normal_turn(t, k) : 0.0);
     arc.ends = {a, b};

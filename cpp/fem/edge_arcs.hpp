@@ -10,10 +10,10 @@ namespace codesign::fem {
 
 // Cubic Bézier curve that replaces an edge of a coarse surface.
 struct EdgeArc {
-  std::array<int, 2> ends;                     // points, the smaller index first
-  std::array<Eigen::Vector3d, 4> control;      // m; on the chord if straight
-  int halvings = 0;                            // it is cut into 2^halvings pieces; 0: straight
-  Eigen::Vector3d at(double x) const;          // 0 <= x <= 1 from the first end, m
+  std::array<int, 2> ends;                 // points, the smaller index first
+  std::array<Eigen::Vector3d, 4> control;  // m; on the chord if straight
+  int halvings = 0;                        // it is cut into 2^halvings pieces; 0: straight
+  Eigen::Vector3d at(double x) const;      // 0 <= x <= 1 from the first end, m
 };
 
 struct EdgeArcs {

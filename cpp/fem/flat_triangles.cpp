@@ -16,8 +16,9 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
-using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
-                                                                 CGAL::No_constraint_intersection_tag>;
+using Triangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
+                                               CGAL::No_constraint_intersection_tag>;
 using Face = Triangulation::Face_handle;
 
 constexpr double kSameArea = 1e-6;  // relative, of the triangles and of the outline around them
@@ -48,12 +49,15 @@ std::vector<Face> inner_faces(const Triangulation& triangulation) {
 }  // namespace
 
 std::optional<std::vector<std::array<int, 3>>> triangulate_flat(
-    const Points& points, const std::vector<std::pair<int, int>>& outline,
+    const std::vector<Eigen::Vector3d>& points, const std::vector<std::pair<int, int>>& outline,
     const std::vector<int>& inside, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
-  const Eigen::RowVector3d origin = points.row(outline.front().first);
+  const auto at = [&](int p) -> const Eigen::Vector3d& {
+    return points[static_cast<std::size_t>(p)];
+  };
+  const Eigen::Vector3d origin = at(outline.front().first);
   const auto flat = [&](int p) {
-    const Eigen::Vector3d d = (points.row(p) - origin).transpose();
+    const Eigen::Vector3d d = at(p) - origin;
     return Eigen::Vector2d(d.dot(u), d.dot(v));
   };
   Triangulation triangulation;
@@ -83,7 +87,8 @@ std::optional<std::vector<std::array<int, 3>>> triangulate_flat(
   std::vector<std::array<int, 3>> triangles;
   for (const Face& face : inner_faces(triangulation)) {
     if (triangulation.is_infinite(face)) return {};
-    triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+    triangles.push_back(
+        {face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
     const auto& [a, b, c] = triangles.back();
     const Eigen::Vector2d ab = flat(b) - flat(a), ac = flat(c) - flat(a);
     found += 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());

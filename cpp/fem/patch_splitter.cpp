@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 using Weights = Eigen::Vector3i;  // barycentric, of kWhole
 using Local = std::array<Weights, 3>;
 
-constexpr int kWhole = 1 << 12;    // divisible by two once for every round of splitting
-constexpr int kMostRounds = 9;     // of splitting a triangle
-constexpr double kFolded = 0.3;    // cosine between a piece and the normal wanted there
+constexpr int kWhole = 1 << 12;  // divisible by two once for every round of splitting
+constexpr int kMostRounds = 9;   // of splitting a triangle
+constexpr double kFolded = 0.3;  // cosine between a piece and the normal wanted there
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -81,7 +81,7 @@ class Splitter {
         keep(t);
     }
     for (const auto& [key, triangles] : flats) {
-      if (std::none_of(triangles.begin(), triangles.end(), [&](int t) { return has_arc(t); }) )
+      if (std::none_of(triangles.begin(), triangles.end(), [&](int t) { return has_arc(t); }))
         for (const int t : triangles) keep(t);
       else
         retriangulate(key.first, triangles);
@@ -254,7 +254,8 @@ void Splitter::split(int t) {
     const std::array<int, 3> ids{maker.id(piece[0]), maker.id(piece[1]), maker.id(piece[2])};
     const Vector3d &a = points_[index(ids[0])], &b = points_[index(ids[1])];
     const Vector3d normal = (b - a).cross(points_[index(ids[2])] - a).normalized();
-    const Vector3d wanted = patch.normal_at((parts(piece[0]) + parts(piece[1]) + parts(piece[2])) / 3.0);
+    const Vector3d wanted =
+        patch.normal_at((parts(piece[0]) + parts(piece[1]) + parts(piece[2])) / 3.0);
     if (!(normal.dot(wanted) > kFolded)) folded_.insert(t);
     emit(ids, t);
   }
@@ -275,10 +276,7 @@ void Splitter::retriangulate(int region, const std::vector<int>& triangles) {
       outline.emplace_back(points[i], points[i + 1]);
       inside.erase(points[i]);
     }
-  Points rows(std::ssize(points_), 3);
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    rows.row(static_cast<Eigen::Index>(i)) = points_[i].transpose();
-  const auto found = triangulate_flat(rows, outline, {inside.begin(), inside.end()},
+  const auto found = triangulate_flat(points_, outline, {inside.begin(), inside.end()},
                                       normals_.regions.normal[index(region)]);
   if (found) {
     for (const auto& corners : *found) emit(corners, triangles.front());

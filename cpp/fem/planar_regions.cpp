@@ -12,17 +12,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kInPlane = 2e-6;     // of the extent: rounding of coordinates in a file
-constexpr double kNoCorner = 0.03;    // rad, turn of an outline that is no corner
-constexpr double kOpposite = 0.4;      // of the width: distance of an opposite side
-constexpr double kWide = 2.5;         // times as wide as its neighbour: hardly a chord of the same arc
-constexpr double kMisfit = 0.25;      // of the turns that explain a bend
-constexpr double kMisfitAngle = 0.02; // rad
+constexpr double kInPlane = 2e-6;   // of the extent: rounding of coordinates in a file
+constexpr double kNoCorner = 0.03;  // rad, turn of an outline that is no corner
+constexpr double kOpposite = 0.2;   // of the width: distance of an opposite side
+constexpr double kWide = 2.5;     // times as wide as its neighbour: hardly a chord of the same arc
+constexpr double kMisfit = 0.25;  // of the turns that explain a bend
+constexpr double kMisfitAngle = 0.02;  // rad
+constexpr std::size_t kSample = 64;    // triangles of a region that are measured
 constexpr int kPasses = 4;
-constexpr int kDepth = 2;             // regions beyond an edge that are asked for their turn
-constexpr double kTie = 0.05;         // of those turns: two arcs are likelier than one and a flat
-constexpr double kStraight = 0.01;    // rad: no turn
-constexpr double kNever = 1e9;        // rad
+constexpr int kDepth = 2;           // regions beyond an edge that are asked for their turn
+constexpr double kTie = 0.05;       // of those turns: two arcs are likelier than one and a flat
+constexpr double kStraight = 0.01;  // rad: no turn
+constexpr double kNever = 1e9;      // rad
 
 // A border edge of a planar region where the surface goes on smoothly.
 struct RegionSide {
@@ -43,12 +44,13 @@ double from_line(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   return (p - a - (p - a).dot(along) * along).norm();
 }
 
-// Width of a region measured from a line through a and b. [m]
+// Width of a region measured from a line through a and b, from some of many triangles. [m]
 double width_from(const SurfaceMesh& surface, const std::vector<int>& triangles, const Vector3d& a,
                   const Vector3d& b) {
   double width = 0.0;
-  for (const int t : triangles)
-    for (int k = 0; k < 3; ++k) width = std::max(width, from_line(corner(surface, t, k), a, b));
+  for (std::size_t i = 0; i < triangles.size(); i += 1 + triangles.size() / kSample)
+    for (int k = 0; k < 3; ++k)
+      width = std::max(width, from_line(corner(surface, triangles[i], k), a, b));
   return width;
 }
 
@@ -107,7 +109,8 @@ class ChordFinder {
       for (const RegionSide& side : sides_) curved.push_back(is_curved_across(side));
       for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i].curved = curved[i];
       for (std::size_t r = 0; r < sides_of_.size(); ++r)
-        regions_.flat[r] = regions_.flat[r] || !is_curved(static_cast<int>(r));
+        regions_.flat[r] = regions_.flat[r] || !is_curved(static_cast<int>(r)) ||
+                           has_point_on_chord(static_cast<int>(r));
     }
     flatten_single();
     for (int r = 0; r < std::ssize(sides_of_); ++r)
@@ -150,13 +153,9 @@ class ChordFinder {
   std::vector<double> turns_from(const RegionSide& side, int depth) const {
     std::vector<double> turns;
     if (flat(side) || corners_[at(side.region)] == 3) return turns;
-    const Vector3d a = point(surface_, side.from), b = point(surface_, side.to);
     for (const int i : sides_of_[at(side.region)]) {
       const RegionSide& far = sides_[at(i)];
-      const auto touches = [&](int p) { return p == far.from || p == far.to; };
-      if (touches(side.from) || touches(side.to)) continue;
-      const Vector3d middle = 0.5 * (point(surface_, far.from) + point(surface_, far.to));
-      if (from_line(middle, a, b) < kOpposite * side.width || runs_straight(far)) continue;
+      if (!is_opposite(side.from, side.to, side.width, far) || runs_straight(far)) continue;
       add_turns(far, depth, turns);
     }
     return turns;
@@ -211,6 +210,18 @@ class ChordFinder {
     return std::any_of(sides.begin(), sides.end(), [&](int i) { return sides_[at(i)].curved; });
   }
 
+  // A point in the middle of a chord is none of the true surface: the facets were cut after they
+  // had been made, as modellers do that know polyhedra only.
+  bool has_point_on_chord(int region) const {
+    const std::map<int, int>& next = outline_[at(region)];
+    std::map<int, bool> curved;  // by the first point of a smooth side
+    for (const int i : sides_of_[at(region)]) curved[sides_[at(i)].from] = sides_[at(i)].curved;
+    return std::any_of(next.begin(), next.end(), [&](const auto& edge) {
+      const auto [p, q] = edge;
+      return next.size() > 3 && !is_corner(p, q, next.at(q)) && !curved[p] && !curved[q];
+    });
+  }
+
   // A curved region between flats is a chamfer.
   void flatten_single() {
     std::vector<bool>& flat = regions_.flat;
@@ -219,6 +230,12 @@ class ChordFinder {
       flat[r] = flat[r] || std::all_of(sides_of_[r].begin(), sides_of_[r].end(), [&](int i) {
                   return before[at(twin(sides_[at(i)]).region)];
                 });
+  }
+
+  bool is_opposite(int p, int q, double width, const RegionSide& far) const {
+    const Vector3d a = point(surface_, p), b = point(surface_, q);
+    return from_line(point(surface_, far.from), a, b) > kOpposite * width &&
+           from_line(point(surface_, far.to), a, b) > kOpposite * width;
   }
 
   // The sides across which a quadrangle is not curved, sharp ones too if the opposite one is not.
@@ -231,15 +248,24 @@ class ChordFinder {
     for (const auto& [p, q] : next) {
       const auto found = curved.find(p);
       if (found == curved.end() ? is_opposite_curved(region, p, q) : found->second) continue;
-      regions_.straight.push_back({region, p, q, before.at(p), next.at(q)});
+      const int last = before.at(p), after = next.at(q);
+      regions_.straight.push_back(
+          {region, p, q, is_corner(last, p, q) ? last : p, is_corner(p, q, after) ? after : q});
     }
   }
 
+  bool is_corner(int p, int q, int r) const {
+    const Vector3d in = point(surface_, q) - point(surface_, p);
+    const Vector3d out = point(surface_, r) - point(surface_, q);
+    return in.cross(out).norm() > kNoCorner * in.norm() * out.norm();
+  }
+
   bool is_opposite_curved(int region, int p, int q) const {
+    const double width = width_from(surface_, regions_.triangles[at(region)], point(surface_, p),
+                                    point(surface_, q));
     const auto& sides = sides_of_[at(region)];
     return std::any_of(sides.begin(), sides.end(), [&](int i) {
-      const RegionSide& side = sides_[at(i)];
-      return side.curved && side.from != p && side.from != q && side.to != p && side.to != q;
+      return sides_[at(i)].curved && is_opposite(p, q, width, sides_[at(i)]);
     });
   }
 
@@ -261,8 +287,10 @@ PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& 
   std::vector<double> area(n);
   std::vector<int> order(n);
   std::iota(order.begin(), order.end(), 0);
-  for (std::size_t t = 0; t < n; ++t) area[t] = triangle_area(surface, static_cast<Eigen::Index>(t));
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return area[at(a)] > area[at(b)]; });
+  for (std::size_t t = 0; t < n; ++t)
+    area[t] = triangle_area(surface, static_cast<Eigen::Index>(t));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return area[at(a)] > area[at(b)]; });
   regions.of_triangle.assign(n, -1);
   for (const int seed : order) {
     if (regions.of_triangle[at(seed)] >= 0) continue;

@@ -19,7 +19,7 @@ struct PlanarRegions {
   // the sharp edge at its end.
   struct Straight {
     int region, from, to;  // the edge, counter-clockwise
-    int before, after;     // points of the outline beside it
+    int before, after;     // points beside it on the outline; the ends where it goes straight on
   };
   std::vector<Straight> straight;
 };

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr double kPrior = 0.2;      // weight of the first guess against that of an edge
 constexpr double kVague = 0.02;     // its weight at a corner of a curved face, seen from one side
 constexpr double kRuling = 3.0;     // weight of a straight line that runs into a fillet
-constexpr double kCylinder = 2e-3;   // smallest over middle spread of a cylinder's normals
+constexpr double kCylinder = 2e-3;  // smallest over middle spread of a cylinder's normals
 constexpr int kSolves = 3;          // the equations are linear in small turns only
 constexpr int kCreaseRounds = 4;    // of finding creases below the feature angle
 constexpr double kSameFlat = 3e-3;  // rad, between flats that are one
@@ -186,6 +186,7 @@ class NormalFit {
 
   // The normal at point p of a region is perpendicular to the side that leads to q.
   void add_ruling(int region, int p, int q) {
+    if (p == q) return;
     const Vector3d along =
         (surface_.points.row(q) - surface_.points.row(p)).transpose().normalized();
     for (const int t : regions_.triangles[at(region)])
@@ -340,9 +341,9 @@ void mark_sharp(const SurfaceMesh& surface, const Neighbours& neighbours, double
       const int r = regions.of_triangle[at(t)], s = regions.of_triangle[at(other)];
       const double cosine = regions.normal[at(r)].dot(regions.normal[at(s)]);
       found.sharp[at(t)][at(k)] =
-          r != s && (cosine < std::cos(feature_angle) ||
-                     (runs_on(r, surface.triangles(t, k)) &&
-                      runs_on(s, surface.triangles(t, (k + 1) % 3))));
+          r != s &&
+          (cosine < std::cos(feature_angle) ||
+           (runs_on(r, surface.triangles(t, k)) && runs_on(s, surface.triangles(t, (k + 1) % 3))));
     }
 }
 
@@ -351,10 +352,8 @@ void mark_sharp(const SurfaceMesh& surface, const Neighbours& neighbours, double
 SmoothNormals find_smooth_normals(const SurfaceMesh& surface, double feature_angle) {
   const Neighbours neighbours = triangle_neighbours(surface.triangles);
   const std::size_t n = neighbours.size();
-  SmoothNormals found{std::vector<std::array<Vector3d, 3>>(n),
-                      std::vector<std::array<bool, 3>>(n),
-                      std::vector<std::array<bool, 3>>(n),
-                      std::vector<bool>(n),
+  SmoothNormals found{std::vector<std::array<Vector3d, 3>>(n), std::vector<std::array<bool, 3>>(n),
+                      std::vector<std::array<bool, 3>>(n), std::vector<bool>(n),
                       find_planar_regions(surface, neighbours)};
   mark_flat_regions(surface, neighbours, found.regions, feature_angle);
   mark_sharp(surface, neighbours, feature_angle, found);

@@ -149,8 +149,7 @@ class Collapser {
       }
       const Vector3d n = (before[1] - before[0]).cross(before[2] - before[0]);
       const Vector3d m = (after[1] - after[0]).cross(after[2] - after[0]);
-      if (n.dot(m) < kMostTurn * n.norm() * m.norm())
-        return false;
+      if (n.dot(m) < kMostTurn * n.norm() * m.norm()) return false;
     }
     return true;
   }

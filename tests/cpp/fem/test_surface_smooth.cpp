@@ -40,8 +40,10 @@ SurfaceMesh turned(const Profile& profile, int n) {
       if (a != b) triangles.emplace_back(a, b, c);
       if (c != d) triangles.emplace_back(a, c, d);
     }
-  SurfaceMesh surface{Points(std::ssize(points), 3), Triangles(std::ssize(triangles), 3),
-                      std::vector<int>(triangles.size(), 0), {"turned"}};
+  SurfaceMesh surface{Points(std::ssize(points), 3),
+                      Triangles(std::ssize(triangles), 3),
+                      std::vector<int>(triangles.size(), 0),
+                      {"turned"}};
   for (std::size_t i = 0; i < points.size(); ++i)
     surface.points.row(static_cast<Eigen::Index>(i)) = points[i];
   for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -95,7 +97,8 @@ TEST(SurfaceSmooth, KeepsAllPointsAndFaces) {
 TEST(SurfaceSmooth, RoundsSpheresToriConesAndTubes) {
   Profile sphere, torus;
   for (int j = 0; j <= 6; ++j)
-    sphere.emplace_back(j % 6 ? 10.0 * std::sin(M_PI * j / 6) : 0.0, -10.0 * std::cos(M_PI * j / 6));
+    sphere.emplace_back(j % 6 ? 10.0 * std::sin(M_PI * j / 6) : 0.0,
+                        -10.0 * std::cos(M_PI * j / 6));
   for (int j = 0; j < 12; ++j)
     torus.emplace_back(20.0 + 6.0 * std::cos(M_PI * j / 6), 6.0 * std::sin(M_PI * j / 6));
   EXPECT_LT(std::abs(volume_error(turned(sphere, 12), 4000.0 * M_PI / 3.0)), 0.005);  // 10.9 %
@@ -163,9 +166,9 @@ SurfaceMesh prism(const Profile& outline) {
 
 TEST(SurfaceSmooth, LeavesPolyhedraUnchanged) {
   const std::vector<Profile> outlines{
-      {{0, 0}, {10, 0}, {10, 10}, {0, 10}},                 // box
-      {{0, 0}, {20, 0}, {20, 5}, {10, 6.76}, {0, 5}},       // roof, crease of 20 degrees
-      {{0, 0}, {20, 0}, {20, 5}, {10, 5.1}, {0, 5}},        // crease of 1 degree
+      {{0, 0}, {10, 0}, {10, 10}, {0, 10}},                // box
+      {{0, 0}, {20, 0}, {20, 5}, {10, 6.76}, {0, 5}},      // roof, crease of 20 degrees
+      {{0, 0}, {20, 0}, {20, 5}, {10, 5.1}, {0, 5}},       // crease of 1 degree
       {{0, 0}, {20, 0}, {20, 5}, {19, 6.73}, {0, 17.7}}};  // chamfer between two flats, 30 degrees
   for (const Profile& outline : outlines) {
     const SurfaceMesh surface = prism(outline);
@@ -184,7 +187,8 @@ TEST(SurfaceSmooth, FlatsOfARoundedBlockStayFlat) {
   for (int c = 0; c < 4; ++c)
     for (int i = 0; i <= 3; ++i) {
       const double angle = M_PI / 2 * (c - 1 + i / 3.0);
-      outline.emplace_back(corners[c][0] + 5 * std::cos(angle), corners[c][1] + 5 * std::sin(angle));
+      outline.emplace_back(corners[c][0] + 5 * std::cos(angle),
+                           corners[c][1] + 5 * std::sin(angle));
     }
   const SurfaceMesh surface = prism(outline);
   const double wanted = 20.0 * (40.0 * 30.0 - (4.0 - M_PI) * 25.0);
