@@ -145,7 +145,7 @@ class ChordFinder {
 
   // Whether the region across a side is not curved there, as far as is known.
   bool runs_straight(const RegionSide& side) const {
-    return flat(side) || (pass_ == 0 ? wide(side) : !side.curved);
+    return flat(side) || (pass_ > 0 && !side.curved);
   }
 
   // What the turn [rad] of a region away from a side may be, from the bends at its opposite sides;
@@ -161,14 +161,21 @@ class ChordFinder {
     return turns;
   }
 
+  bool has_opposite(const RegionSide& side) const {
+    const auto& sides = sides_of_[at(side.region)];
+    return std::any_of(sides.begin(), sides.end(), [&](int i) {
+      return is_opposite(side.from, side.to, side.width, sides_[at(i)]);
+    });
+  }
+
   // The turn that explains the bend at a side if the region across is straight, or has the same
   // curvature, or turns by what is known from beyond it (an inflection, another radius).
   void add_turns(const RegionSide& side, int depth, std::vector<double>& turns) const {
     const RegionSide& there = twin(side);
-    if (runs_straight(there)) {
+    const bool straight = runs_straight(there);
+    if (straight || !has_opposite(there) || (pass_ == 0 && wide(there)))
       turns.push_back(2.0 * side.turn);
-      return;
-    }
+    if (straight) return;
     turns.push_back(2.0 * side.turn / (side.width + there.width) * side.width);
     if (depth == 0) return;
     for (const double other : turns_from(there, depth - 1))
