@@ -405,7 +405,7 @@ def stress(
         if document["smoothing"] is not None:
             table.add_row("facets curved back", _describe_facets(document["smoothing"]))
         if document["facets_literal"] is not None:
-            table.add_row("facets taken literally", _describe_facets(document["facets_literal"]) + "; see --smooth")
+            table.add_row("facets that look round", _describe_facets(document["facets_literal"]) + " if --smooth")
         table.add_row("elements", f"{document['tetrahedra']}, edge length {document['edge_length'] * 1e3:.3g} mm")
         table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
         out.print(table)
@@ -415,10 +415,9 @@ def stress(
 def _describe_facets(facets: dict[str, Any]) -> str:
     if facets["reason"]:
         return f"none: {facets['reason']}"
-    return (
-        f"{facets['facets']} look like chords of round faces, up to {1e3 * facets['max_distance']:.2g} mm off, "
-        f"{facets['volume_change']:+.2%} of volume if curved"
-    )
+    left = f", {facets['left']} left lest they fold" if facets["left"] else ""
+    distance, volume = f"{1e3 * facets['max_distance']:.2g} mm", f"{facets['volume_change']:+.2%}"
+    return f"{facets['facets']} by up to {distance}, volume {volume}{left}"
 
 
 @app.command(epilog="Example: `codesign doctor`")
