@@ -68,7 +68,8 @@ SmoothSurface smooth_surface(const SurfaceMesh& surface, double feature_angle) {
     for (int round = 0; round < kRounds; ++round) {
       const EdgeArcs arcs = find_edge_arcs(surface, normals, literal, feature_angle);
       SplitSurface split = split_patches(surface, normals, arcs);
-      if (split.curved == 0) return unchanged(surface, "nothing to curve: flat faces, or facets that are fine already");
+      if (split.curved == 0)
+        return unchanged(surface, "nothing to curve: flat faces, or facets that are fine already");
       const std::vector<int> faulty = faulty_triangles(split);
       if (!faulty.empty()) {
         if (!leave(faulty, normals.regions, literal)) break;  // the facets themselves cross

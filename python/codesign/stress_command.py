@@ -214,20 +214,35 @@ def _smoothing(report: fem.SmoothReport) -> dict[str, Any]:
 def _mesh(
     surface: fem.SurfaceMesh, places: Sequence[Place], size: float, smooth: bool
 ) -> tuple[fem.TetMesh, list[fem.Selection], dict[str, Any] | None]:
-    """The mesh, the places on it, with exact borders unless they are too ragged for the edge length, and the smoothing.
+    """The mesh, the places on it, and the smoothing; the facets themselves if their smooth surface cannot be meshed.
 
     Places are looked up on the facets of the file; the pieces of a facet belong to its place.
     """
     labelled, selections = label_surface(surface, places)
-    smoothing = None
-    if smooth:
-        labelled, report = fem.smooth_surface(labelled)
-        smoothing = _smoothing(report)
+    if not smooth:
+        return *_mesh_either(labelled, surface, selections, places, size), None
+    curved, report = fem.smooth_surface(labelled)
     try:
-        return fem.tetrahedralize(labelled, size), selections, smoothing
+        plain = fem.smooth_surface(surface)[0]
+        return *_mesh_either(curved, plain, selections, places, size), _smoothing(report)
+    except MeshError as error:
+        reason = f"the curved surface cannot be meshed ({error}): facets taken literally"
+        unused = {"facets": 0, "max_distance": 0.0, "volume_change": 0.0, "left": report.facets, "reason": reason}
+        return *_mesh_either(labelled, surface, selections, places, size), unused
+
+
+def _mesh_either(
+    labelled: fem.SurfaceMesh,
+    plain: fem.SurfaceMesh,
+    selections: list[fem.Selection],
+    places: Sequence[Place],
+    size: float,
+) -> tuple[fem.TetMesh, list[fem.Selection]]:
+    """The mesh and the places on it, with exact borders unless they are too ragged for the edge length."""
+    try:
+        return fem.tetrahedralize(labelled, size), selections
     except MeshError:
-        plain = fem.smooth_surface(surface)[0] if smooth else surface
-        return fem.tetrahedralize(plain, size), [place.on_mesh() for place in places], smoothing
+        return fem.tetrahedralize(plain, size), [place.on_mesh() for place in places]
 
 
 def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:

@@ -135,6 +135,23 @@ def test_stress_says_that_facets_look_round_and_curves_them_when_asked(tmp_path)
     assert smooth["reaction_force"] == pytest.approx([0, 0, -1000], abs=1e-4)
 
 
+def test_facets_are_taken_literally_if_their_smooth_surface_cannot_be_meshed(tmp_path, monkeypatch):
+    path = write_stl(tmp_path / "rod.stl", extruded([circle(4.5, 12)], 30.0))
+    mesh = fem.tetrahedralize
+
+    def refuse(surface, size):
+        if len(surface.triangles) > 100:
+            raise MeshError("too fine")
+        return mesh(surface, size)
+
+    monkeypatch.setattr(fem, "tetrahedralize", refuse)
+    arguments = (path, 1e-3, MATERIALS["ergal"], ["near:0,0,0"], ["normal:0,0,1: 0 0 1000"], 2.0)
+    document = stress_document(*arguments, smooth=True)
+    assert "too fine" in document["smoothing"]["reason"]
+    assert document["smoothing"]["facets"] == 0
+    assert document["volume"] == pytest.approx(3 * 4.5e-3**2 * 0.03, rel=0.02)  # of the prism
+
+
 def test_command_line_reports_both(tmp_path):
     path = write_stl(tmp_path / "rod.stl", extruded([circle(4.5, 12)], 30.0))
     command = [sys.executable, "-m", "codesign.cli", "stress", str(path), "--fix", "near:0,0,0", "--edge-length", "2"]
