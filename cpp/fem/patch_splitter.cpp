@@ -263,7 +263,7 @@ void Splitter::split(int t) {
 
 void Splitter::retriangulate(int region, const std::vector<int>& triangles) {
   std::map<std::pair<int, int>, std::vector<int>> lines;  // directed edges
-  std::set<int> inside, outside;
+  std::set<int> inside;
   for (const int t : triangles)
     for (int k = 0; k < 3; ++k) {
       const int a = coarse_.triangles(t, k), b = coarse_.triangles(t, (k + 1) % 3);
