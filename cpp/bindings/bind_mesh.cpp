@@ -14,6 +14,7 @@
 #include "fem/stl.hpp"
 #include "fem/surface_check.hpp"
 #include "fem/surface_features.hpp"
+#include "fem/surface_smooth.hpp"
 #include "fem/tet_mesher.hpp"
 #include "fem/tet_topology.hpp"
 
@@ -95,6 +96,44 @@ Args:
 Raises:
     MeshError: unreadable, truncated, not finite, empty, huge, open, inside-out, not manifold,
         self-intersecting; the message says what, where and why.)");
+}
+
+std::pair<SurfaceMesh, SmoothReport> smooth(const SurfaceMesh& surface, double feature_angle_deg) {
+  SmoothSurface result = smooth_surface(surface, feature_angle_deg * kDegree);
+  return {std::move(result.surface), std::move(result.report)};
+}
+
+void bind_smooth(py::module_& m) {
+  py::class_<SmoothReport>(m, "SmoothReport", "What smooth_surface did.")
+      .def_readonly("facets", &SmoothReport::facets, "triangles replaced by curved ones")
+      .def_readonly("max_distance", &SmoothReport::max_distance,
+                    "m, of a new point from its place on the triangle replaced")
+      .def_readonly("volume_change", &SmoothReport::volume_change, "relative")
+      .def_readonly("left", &SmoothReport::left,
+                    "triangles left as they are lest the surface folds or crosses itself")
+      .def_readonly("reason", &SmoothReport::reason,
+                    "why the surface is returned unchanged; empty otherwise");
+  m.def("smooth_surface", &smooth, "surface"_a, "feature_angle_deg"_a = 40.0,
+        py::call_guard<py::gil_scoped_release>(),
+        R"(The smooth surface that a coarse tessellation was made from, in finer triangles.
+
+The points of a CAD tessellation lie on the true surface: facets that meet at less than the feature
+angle and belong to an arc are curved back, sharp edges between them and the outlines of flat faces
+become round. Flat faces keep their plane, all points stay, each piece has the face of its triangle.
+
+Args:
+    surface: closed, outward-oriented.
+    feature_angle_deg: edges sharper than this are edges of the solid; between 0 and 90.
+
+Returns:
+    The surface, and a SmoothReport; the surface as given if nothing is curved, or if it would cross
+    itself (`report.reason`).
+
+Raises:
+    MeshError: the surface bounds no solid.
+    ValueError: the angle is out of range.
+
+Source: Vlachos et al., Curved PN Triangles, I3D 2001, with normals fitted to the chords.)");
 }
 
 void bind_mass_properties(py::module_& m) {
@@ -284,6 +323,7 @@ Raises:
 
 void bind_mesh(py::module_& m) {
   bind_surface(m);
+  bind_smooth(m);
   bind_mass_properties(m);
   bind_size_field(m);
   bind_quality(m);

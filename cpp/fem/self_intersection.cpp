@@ -28,7 +28,7 @@ std::string centre(const SurfaceMesh& surface, Eigen::Index t) {
 
 }  // namespace
 
-void check_self_intersection(const SurfaceMesh& surface) {
+std::vector<std::pair<int, int>> crossing_triangles(const SurfaceMesh& surface, int most) {
   Polyhedron polyhedron;
   std::vector<Polyhedron::Vertex_index> vertex;
   for (Eigen::Index i = 0; i < surface.points.rows(); ++i)
@@ -45,13 +45,20 @@ void check_self_intersection(const SurfaceMesh& surface) {
   using Face = Polyhedron::Face_index;
   std::vector<std::pair<Face, Face>> crossing;
   CGAL::Polygon_mesh_processing::self_intersections<CGAL::Sequential_tag>(
-      polyhedron, std::back_inserter(crossing), CGAL::parameters::maximum_number(1));
+      polyhedron, std::back_inserter(crossing), CGAL::parameters::maximum_number(most));
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [a, b] : crossing)
+    pairs.emplace_back(static_cast<int>(a.idx()), static_cast<int>(b.idx()));
+  return pairs;
+}
+
+void check_self_intersection(const SurfaceMesh& surface) {
+  const auto crossing = crossing_triangles(surface, 1);
   if (crossing.empty()) return;
   const auto [a, b] = crossing.front();
-  throw MeshError("the surface crosses itself: triangle " + std::to_string(a.idx()) + " at " +
-                  centre(surface, static_cast<Eigen::Index>(a.idx())) + " and triangle " +
-                  std::to_string(b.idx()) + " at " +
-                  centre(surface, static_cast<Eigen::Index>(b.idx())));
+  throw MeshError("the surface crosses itself: triangle " + std::to_string(a) + " at " +
+                  centre(surface, a) + " and triangle " + std::to_string(b) + " at " +
+                  centre(surface, b));
 }
 
 }  // namespace codesign::fem

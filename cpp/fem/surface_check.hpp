@@ -20,6 +20,10 @@ struct SurfaceReport {
 // orientation, inside-out, no volume.
 SurfaceReport check_surface(const SurfaceMesh& surface);
 
+// Up to `most` pairs of triangles that cross each other; those that share a corner or an edge may
+// touch there. Exact predicates. Throws MeshError if the surface touches itself in a point.
+std::vector<std::pair<int, int>> crossing_triangles(const SurfaceMesh& surface, int most);
+
 // Throws MeshError if two triangles cross each other, with a place; triangles that share a corner
 // or an edge may touch there. Exact predicates.
 void check_self_intersection(const SurfaceMesh& surface);

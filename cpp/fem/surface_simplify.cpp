@@ -136,24 +136,20 @@ class Collapser {
     });
   }
 
-  // No triangle at p, but those that vanish with q, turns over when p moves. One that is narrower
-  // than the tolerance may turn: it has no direction worth keeping.
+  // No triangle at p, but those that vanish with q, turns over when p moves. Not even one that is
+  // narrower than the tolerance: folded, it would be a wedge between two feature lines.
   bool keeps_sides(int p, int q, const Vector3d& target) {
     for (const int t : triangles_at(p)) {
       if (has_corner(t, q)) continue;
       std::array<Vector3d, 3> before, after;
-      double longest = 0.0;
       for (std::size_t k = 0; k < 3; ++k) {
         const int c = surface_.triangles(t, static_cast<int>(k));
         before[k] = point(c);
         after[k] = c == p ? target : before[k];
       }
-      for (std::size_t k = 0; k < 3; ++k)
-        longest = std::max(longest, (before[(k + 1) % 3] - before[k]).norm());
       const Vector3d n = (before[1] - before[0]).cross(before[2] - before[0]);
       const Vector3d m = (after[1] - after[0]).cross(after[2] - after[0]);
-      if (n.norm() > tolerance_ * longest && n.dot(m) < kMostTurn * n.norm() * m.norm())
-        return false;
+      if (n.dot(m) < kMostTurn * n.norm() * m.norm()) return false;
     }
     return true;
   }

@@ -385,6 +385,9 @@ def stress(
     exclusion: Annotated[
         float | None, typer.Option(metavar="MM", help="No peak is read nearer to clamps and load borders; default 3.")
     ] = None,
+    smooth: Annotated[
+        bool, typer.Option("--smooth", help="The file is a coarse tessellation of curved faces: curve its facets back.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Safety factor of any closed surface; exit code 1 if the material yields.
@@ -394,7 +397,9 @@ def stress(
     """
     from codesign.stress_command import find_material, stress_document
 
-    document = stress_document(part, scale, find_material(material), fix, load, edge_length, vtu, png, exclusion)
+    document = stress_document(
+        part, scale, find_material(material), fix, load, edge_length, vtu, png, exclusion, smooth
+    )
     if as_json:
         print_json(document)
     else:
@@ -406,10 +411,22 @@ def stress(
         )  # fmt: skip
         table.add_row("stress exceeded in 50 mm³", f"{document['stress_50'] / 1e6:.4g} MPa")
         table.add_row("largest displacement", f"{document['max_displacement'] * 1e3:.4g} mm")
+        if document["smoothing"] is not None:
+            table.add_row("facets curved back", _describe_facets(document["smoothing"]))
+        if document["facets_literal"] is not None:
+            table.add_row("facets that look round", _describe_facets(document["facets_literal"]) + " if --smooth")
         table.add_row("elements", f"{document['tetrahedra']}, edge length {document['edge_length'] * 1e3:.3g} mm")
         table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
         out.print(table)
     return 0 if document["safety_factor"] >= 1.0 else 1
+
+
+def _describe_facets(facets: dict[str, Any]) -> str:
+    if facets["reason"]:
+        return f"none: {facets['reason']}"
+    left = f", {facets['left']} left lest they fold" if facets["left"] else ""
+    distance, volume = f"{1e3 * facets['max_distance']:.2g} mm", f"{facets['volume_change']:+.2%}"
+    return f"{facets['facets']} by up to {distance}, volume {volume}{left}"
 
 
 @app.command(epilog="Example: `codesign doctor`")

@@ -6,9 +6,11 @@ from codesign._core.fem import (
     MeshReport,
     SizeField,
     SizeSource,
+    SmoothReport,
     SurfaceMesh,
     load_surface,
     mass_properties,
+    smooth_surface,
     tetrahedralize,
 )
 from codesign.fem_model import (
@@ -58,6 +60,7 @@ __all__ = [
     "Selection",
     "SizeField",
     "SizeSource",
+    "SmoothReport",
     "StaticResult",
     "StaticSystem",
     "Support",
@@ -74,6 +77,7 @@ __all__ = [
     "select_faces",
     "select_nodes",
     "select_union",
+    "smooth_surface",
     "solve_static",
     "tetrahedralize",
 ]

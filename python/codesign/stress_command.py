@@ -16,6 +16,8 @@ from codesign.surface_regions import Box, Facing, Near, Place, label_surface
 from codesign.units import GIGA, MEGA, MILLIMETRE
 
 ELEMENTS_WANTED = 30_000  # of the default edge length, at most
+COARSE = 20_000  # triangles: a surface with more is no coarse tessellation
+FACET_DISTANCE = 0.06  # of sides of elements to the surface, relative to their size, as in fem.tetrahedralize
 WALLS = 2.5  # elements across the mean wall, of the default edge length
 
 # Typical catalogue values; ergal (aluminium 7075-T6) as in the shipped study.
@@ -112,6 +114,7 @@ def stress_document(
     vtu: Path | None = None,
     png: Path | None = None,
     exclusion_mm: float | None = None,
+    smooth: bool = False,
 ) -> dict[str, Any]:
     """Meshes, solves and gives the JSON document of `codesign stress`; SI units.
 
@@ -121,6 +124,7 @@ def stress_document(
         edge_length_mm: of the elements; from the wall thickness if absent. vtu, png: the stress field, a picture of it.
         exclusion_mm: the peak stress is read farther than this from clamps and from borders of loaded faces; 3 mm, or a
             tenth of a small part's extent, if absent.
+        smooth: take the file for a tessellation of curved faces and curve its facets back before meshing.
 
     Raises: MeshError, SolverError, StressInputError.
     """
@@ -135,7 +139,7 @@ def stress_document(
     surface = fem.load_surface(path, scale)
     size = default_edge_length(surface) if edge_length_mm is None else edge_length_mm * MILLIMETRE
     exclusion = default_exclusion(surface) if exclusion_mm is None else exclusion_mm * MILLIMETRE
-    mesh, places = _mesh(surface, [*held, *(place for place, _ in pushed)], size)
+    mesh, places, smoothing = _mesh(surface, [*held, *(place for place, _ in pushed)], size, smooth)
     supports = [fem.Support(place) for place in places[: len(held)]]
     loads = [fem.Force(place, force) for place, (_, force) in zip(places[len(held) :], pushed, strict=True)]
     meshed = time.perf_counter()
@@ -179,17 +183,66 @@ def stress_document(
             "collapse_distance": report.collapse_distance,
             "peeled": report.peeled,
         },
+        "smoothing": smoothing,
+        "facets_literal": None if smooth else literal_facets(surface, size),
         "seconds": {"mesh": meshed - start, "solve": solved - meshed},
     }
 
 
-def _mesh(surface: fem.SurfaceMesh, places: Sequence[Place], size: float) -> tuple[fem.TetMesh, list[fem.Selection]]:
-    """The mesh and the places on it, with exact borders unless they are too ragged for the edge length."""
+def literal_facets(surface: fem.SurfaceMesh, size: float) -> dict[str, Any] | None:
+    """How far a surface that looks like a coarse tessellation is from a smooth one; None if that does not matter.
+
+    It matters beyond the distance that sides of elements of `size` [m] keep to the surface anyway. A fine tessellation
+    (more than COARSE triangles) is not looked at.
+    """
+    if len(surface.triangles) > COARSE:
+        return None
+    report = fem.smooth_surface(surface)[1]
+    return _smoothing(report) if report.max_distance > FACET_DISTANCE * size else None
+
+
+def _smoothing(report: fem.SmoothReport) -> dict[str, Any]:
+    return {
+        "facets": report.facets,
+        "max_distance": report.max_distance,
+        "volume_change": report.volume_change,
+        "left": report.left,
+        "reason": report.reason,
+    }
+
+
+def _mesh(
+    surface: fem.SurfaceMesh, places: Sequence[Place], size: float, smooth: bool
+) -> tuple[fem.TetMesh, list[fem.Selection], dict[str, Any] | None]:
+    """The mesh, the places on it, and the smoothing; the facets themselves if their smooth surface cannot be meshed.
+
+    Places are looked up on the facets of the file; the pieces of a facet belong to its place.
+    """
     labelled, selections = label_surface(surface, places)
+    if not smooth:
+        return *_mesh_either(labelled, surface, selections, places, size), None
+    curved, report = fem.smooth_surface(labelled)
+    try:
+        plain = fem.smooth_surface(surface)[0]
+        return *_mesh_either(curved, plain, selections, places, size), _smoothing(report)
+    except MeshError as error:
+        reason = f"the curved surface cannot be meshed ({error}): facets taken literally"
+        unused = {"facets": 0, "max_distance": 0.0, "volume_change": 0.0, "left": report.facets, "reason": reason}
+        return *_mesh_either(labelled, surface, selections, places, size), unused
+
+
+def _mesh_either(
+    labelled: fem.SurfaceMesh,
+    plain: fem.SurfaceMesh,
+    selections: list[fem.Selection],
+    places: Sequence[Place],
+    size: float,
+) -> tuple[fem.TetMesh, list[fem.Selection]]:
+    """The mesh and the places on it, with exact borders unless they are too ragged for the edge length."""
     try:
         return fem.tetrahedralize(labelled, size), selections
     except MeshError:
-        return fem.tetrahedralize(surface, size), [place.on_mesh() for place in places]
+        return fem.tetrahedralize(plain, size), [place.on_mesh() for place in places]
 
 
 def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:

@@ -26,6 +26,7 @@ __all__: list[str] = [
     "Selection",
     "SizeField",
     "SizeSource",
+    "SmoothReport",
     "StaticResult",
     "StaticSettings",
     "StaticSystem",
@@ -40,6 +41,7 @@ __all__: list[str] = [
     "natural_modes",
     "selected_nodes",
     "selected_triangles",
+    "smooth_surface",
     "tetrahedralize",
     "triangles_in_box",
     "triangles_near",
@@ -84,6 +86,36 @@ class SurfaceMesh:
     def triangles(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int32], "[m, 3]"]:
         """
         (m, 3)
+        """
+
+class SmoothReport:
+    """
+    What smooth_surface did.
+    """
+    @property
+    def facets(self) -> int:
+        """
+        triangles replaced by curved ones
+        """
+    @property
+    def left(self) -> int:
+        """
+        triangles left as they are lest the surface folds or crosses itself
+        """
+    @property
+    def max_distance(self) -> float:
+        """
+        m, of a new point from its place on the triangle replaced
+        """
+    @property
+    def reason(self) -> str:
+        """
+        why the surface is returned unchanged; empty otherwise
+        """
+    @property
+    def volume_change(self) -> float:
+        """
+        relative
         """
 
 class MassProperties:
@@ -654,6 +686,31 @@ def selected_nodes(mesh: TetMesh, selection: Selection) -> list[int]:
 def selected_triangles(mesh: TetMesh, selection: Selection) -> list[int]:
     """
     Rows of mesh.boundary that a selection holds, sorted.
+    """
+
+def smooth_surface(
+    surface: SurfaceMesh, feature_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 40.0
+) -> tuple[SurfaceMesh, SmoothReport]:
+    """
+    The smooth surface that a coarse tessellation was made from, in finer triangles.
+
+    The points of a CAD tessellation lie on the true surface: facets that meet at less than the feature
+    angle and belong to an arc are curved back, sharp edges between them and the outlines of flat faces
+    become round. Flat faces keep their plane, all points stay, each piece has the face of its triangle.
+
+    Args:
+        surface: closed, outward-oriented.
+        feature_angle_deg: edges sharper than this are edges of the solid; between 0 and 90.
+
+    Returns:
+        The surface, and a SmoothReport; the surface as given if nothing is curved, or if it would cross
+        itself (`report.reason`).
+
+    Raises:
+        MeshError: the surface bounds no solid.
+        ValueError: the angle is out of range.
+
+    Source: Vlachos et al., Curved PN Triangles, I3D 2001, with normals fitted to the chords.
     """
 
 def tetrahedralize(
