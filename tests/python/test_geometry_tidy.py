@@ -13,10 +13,10 @@ from codesign.studies.ironcub.forearm import ForearmJetSupport
 
 # Designs whose raw booleans have edges of 12 to 32 micrometres or, divided more finely, triangles 0.1 micrometres high.
 AWKWARD = [
-    (JetpackBracket(37, 78), 48),
-    (JetpackBracket(62, 60), 48),
-    (ForearmJetSupport(116, 92), 48),
-    (JetpackBracket(19.65441687750465, 78.32381594200193), 76),
+    (JetpackBracket(37, 78), Resolution(48)),
+    (JetpackBracket(62, 60), Resolution(48)),
+    (ForearmJetSupport(116, 92), Resolution(48)),
+    (JetpackBracket(19.65441687750465, 78.32381594200193), Resolution(76, chord_mm=0.012)),
 ]
 
 
@@ -31,9 +31,9 @@ def triangle_heights(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / np.linalg.norm(sides, axis=2).max(axis=1)
 
 
-@pytest.mark.parametrize(("part", "segments"), AWKWARD, ids=lambda value: getattr(value, "title", str(value)))
-def test_awkward_designs_come_out_clean(part: Part, segments: int) -> None:
-    raw = build_solid(part.shape(), Resolution(segments))
+@pytest.mark.parametrize(("part", "resolution"), AWKWARD, ids=lambda value: getattr(value, "title", str(value)))
+def test_awkward_designs_come_out_clean(part: Part, resolution: Resolution) -> None:
+    raw = build_solid(part.shape(), resolution)
     assert (
         edge_lengths(raw.points, raw.triangles).min() < 0.05
         or triangle_heights(raw.points, raw.triangles).min() < 0.001

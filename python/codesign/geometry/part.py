@@ -19,7 +19,8 @@ from codesign.geometry.solid import Solid, build_solid
 from codesign.geometry.surface import SurfaceMesh, surface_mesh
 
 _PARAMETER = "codesign.parameter"
-MASS_SEGMENTS = 24  # of the coarser of the two meshes that mass properties are extrapolated from
+# Of the coarser of the two meshes that mass properties are extrapolated from.
+MASS_SEGMENTS, MASS_CHORD_MM = 24, 0.12
 EXPORT_RESOLUTION = Resolution(segments=4096, chord_mm=0.01)
 FEM_RESOLUTION = Resolution(segments=48)  # stresses do not change with more
 
@@ -191,7 +192,7 @@ def _moments(part: Part) -> Vector:
     """Volume moments (10,) in mm of the true curved solid."""
     moments = []
     for refine in (1, 2):
-        solid = _checked(part.shape(), Resolution(MASS_SEGMENTS, refine=refine), part.through_holes())
+        solid = _checked(part.shape(), Resolution(MASS_SEGMENTS, MASS_CHORD_MM, refine), part.through_holes())
         moments.append(volume_moments(solid.points, solid.triangles))
     return extrapolate(*moments)
 

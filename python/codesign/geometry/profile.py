@@ -19,7 +19,7 @@ FULL_TURN = 2.0 * math.pi
 class Resolution:
     """How finely circles are divided: `segments` a full turn, fewer where the chord stays within `chord_mm` of the arc.
 
-    chord_mm: None takes 0.03 mm at 48 segments and scales it like the sagitta of a circle, with 1 / segments².
+    chord_mm: None takes 0.06 mm at 48 segments and scales it like the sagitta of a circle, with 1 / segments².
     Roundings (arcs of less than a full turn) get at least 8 chords a quarter turn: what their stress needs.
     refine: multiplies every count; a mesh of refine = 2 has exactly twice the segments of refine = 1 on every arc,
     which makes extrapolation to the true curve possible.
@@ -31,7 +31,7 @@ class Resolution:
 
     def arc_segments(self, radius: float, angle: float) -> int:
         """Number of chords on an arc of `radius` [mm] and `angle` [rad]."""
-        chord = 0.03 * (48.0 / self.segments) ** 2 if self.chord_mm is None else self.chord_mm
+        chord = 0.06 * (48.0 / self.segments) ** 2 if self.chord_mm is None else self.chord_mm
         wanted = 8 * math.ceil(math.pi / math.acos(1.0 - min(chord / radius, 0.3)) / 8)  # whole chords on each eighth
         least = 16 if abs(angle) == FULL_TURN else 32
         full_turn = min(max(wanted, least), self.segments)
