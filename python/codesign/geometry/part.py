@@ -22,7 +22,8 @@ _PARAMETER = "codesign.parameter"
 # Of the coarser of the two meshes that mass properties are extrapolated from.
 MASS_SEGMENTS, MASS_CHORD_MM = 24, 0.12
 EXPORT_RESOLUTION = Resolution(segments=4096, chord_mm=0.01)
-FEM_RESOLUTION = Resolution(segments=48)  # stresses do not change with more
+SURFACE_RESOLUTION = Resolution(segments=48)
+FEM_CHORD_MM = 0.03  # between chord and arc of small circles at 48 segments: stresses do not change with less
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +114,7 @@ class Part(ABC):
         """Names of the named faces."""
         return face_names(self.shape())
 
-    def solid(self, resolution: Resolution = FEM_RESOLUTION) -> Solid:
+    def solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
         """Closed triangle mesh in mm.
 
         Raises: GeometryError if it is not one body with the expected holes and all named faces.
@@ -126,7 +127,8 @@ class Part(ABC):
 
     def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> SurfaceMesh:
         """Closed surface in metres of the shape to be analysed; `geometry` and `variant` as in `fem_shape`."""
-        return surface_mesh(_checked(self.fem_shape(geometry, **variant), Resolution(segments)).tidied())
+        resolution = Resolution(segments, FEM_CHORD_MM * (48.0 / segments) ** 2)
+        return surface_mesh(_checked(self.fem_shape(geometry, **variant), resolution).tidied())
 
     def mass_properties(self) -> MassProperties:
         """Mass, centre of mass and inertia of the true curved solid (relative error below 1e-5), part frame, SI."""
@@ -167,7 +169,7 @@ class MirroredPart(Part):
         """As the original."""
         return self.original.through_holes()
 
-    def solid(self, resolution: Resolution = FEM_RESOLUTION) -> Solid:
+    def solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
         """The mirror image of the original's mesh."""
         return self.original.solid(resolution).mirrored(self.axis)
 

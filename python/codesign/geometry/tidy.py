@@ -16,6 +16,7 @@ from codesign.geometry.tessellate import Indices
 
 SHORTEST_EDGE = 0.05  # mm
 SMALLEST_HEIGHT = 0.002  # mm, of a triangle
+Place = list[float]  # (3,) mm; plain numbers are faster than arrays for a handful of triangles
 _KEPT_DIRECTION = 0.5  # cosine by which the normal of a triangle may turn when a tiny edge beside it goes
 
 
@@ -81,24 +82,36 @@ class _Surface:
                 self._fan[v].add(triangle)
 
     def _corners(self, triangle: int) -> list[int]:
-        return [int(v) for v in self.triangles[triangle]]
+        corners: list[int] = self.triangles[triangle].tolist()
+        return corners
+
+    def _place(self, point: int) -> Place:
+        place: Place = self.points[point].tolist()
+        return place
+
+    def _corners_and_places(self, triangle: int) -> tuple[list[int], list[Place]]:
+        corners = self._corners(triangle)
+        return corners, [self._place(v) for v in corners]
 
     def shrink(self, first: int, second: int) -> None:
         """Moves one end of an edge onto the other, if that folds nothing."""
         shared = self._fan[first] & self._fan[second]
-        if len(shared) != 2 or math.dist(self.points[first], self.points[second]) >= SHORTEST_EDGE:
+        if len(shared) != 2 or math.dist(self._place(first), self._place(second)) >= SHORTEST_EDGE:
             return
         neighbours = [{v for triangle in self._fan[end] for v in self._corners(triangle)} for end in (first, second)]
         if len(neighbours[0] & neighbours[1]) != 4:  # the ends and one point on each side
             return
         choices = []
         for gone, kept in ((first, second), (second, first)):
-            moving = sorted(self._fan[gone] - shared)
-            before = self.triangles[moving]
-            after = np.where(before == gone, kept, before)
-            turn = (self._normals(before) * self._normals(after)).sum(axis=1).min(initial=1.0)
+            target = self._place(kept)
+            moves = [
+                (before, [target if v == gone else place for v, place in zip(corners, before, strict=True)])
+                for corners, before in map(self._corners_and_places, self._fan[gone] - shared)
+            ]
+            turn = min((_dot(_normal(before), _normal(after)) for before, after in moves), default=1.0)
             if turn >= _KEPT_DIRECTION:
-                choices.append((self._swept_volume(before, kept), gone, kept))
+                swept = sum(abs(_volume(before, target)) for before, _ in moves)  # what the move changes at most
+                choices.append((swept, gone, kept))
         if not choices:
             return
         _, gone, kept = min(choices)
@@ -113,7 +126,7 @@ class _Surface:
     def flip(self, flat: int) -> None:
         """Gives a flat triangle and its neighbour over its longest edge the other diagonal, if they share a plane."""
         corners = self._corners(flat)
-        sides = [math.dist(self.points[corners[k]], self.points[corners[k - 2]]) for k in range(3)]
+        sides = [math.dist(self._place(corners[k]), self._place(corners[k - 2])) for k in range(3)]
         k = sides.index(max(sides))
         a, b, tip = (corners[(k + i) % 3] for i in range(3))
         others = (self._fan[a] & self._fan[b]) - {flat}
@@ -125,9 +138,9 @@ class _Surface:
         (opposite,) = set(self._corners(other)) - {a, b}
         if any(opposite in self._corners(triangle) for triangle in self._fan[tip]):
             return
-        new = np.array([[tip, a, opposite], [opposite, b, tip]])
-        before = self._normals(self.triangles[[other]])[0]
-        if (self._normals(new) @ before).min() < 1.0 - 1e-9:
+        new = [[tip, a, opposite], [opposite, b, tip]]
+        before = _normal(self._corners_and_places(other)[1])
+        if min(_dot(_normal([self._place(v) for v in corners]), before) for corners in new) < 1.0 - 1e-9:
             return
         self.triangles[[flat, other]] = new
         self._fan[a].discard(other)
@@ -136,23 +149,32 @@ class _Surface:
         if opposite in self._fan:
             self._fan[opposite].add(flat)
 
-    def _swept_volume(self, triangles: Indices, point: int) -> float:
-        """Sum of the volumes between triangles and a point: what a move to that point changes at most."""
-        a, b, c = (self.points[triangles[:, k]] - self.points[point] for k in range(3))
-        return float(np.abs((a * _cross(b, c)).sum(axis=1)).sum())
-
-    def _normals(self, triangles: Indices) -> Vector:
-        a, b, c = (self.points[triangles[:, k]] for k in range(3))
-        normals = _cross(b - a, c - a)
-        length = np.sqrt((normals**2).sum(axis=1, keepdims=True))
-        return normals / np.where(length > 0.0, length, 1.0)
-
     def result(self) -> tuple[Vector, Indices, Indices]:
         """Points in use, triangles and faces."""
         return *without_unused(self.points, self.triangles[self.alive]), self.face[self.alive]
 
 
-def _cross(a: Vector, b: Vector) -> Vector:
-    """Products of rows (n, 3); `np.cross` takes four times as long for a handful of them."""
-    (x, y, z), (u, v, w) = a.T, b.T
-    return np.stack((y * w - z * v, z * u - x * w, x * v - y * u), axis=1)
+def _dot(a: Place, b: Place) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Place, b: Place) -> Place:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def _from(origin: Place, point: Place) -> Place:
+    return [p - o for p, o in zip(point, origin, strict=True)]
+
+
+def _normal(triangle: list[Place]) -> Place:
+    """Unit normal; zero for a triangle without area."""
+    a, b, c = triangle
+    normal = _cross(_from(a, b), _from(a, c))
+    length = math.hypot(*normal)
+    return [x / length for x in normal] if length > 0.0 else normal
+
+
+def _volume(triangle: list[Place], apex: Place) -> float:
+    """Six times the volume between a triangle and a point."""
+    a, b, c = (_from(apex, corner) for corner in triangle)
+    return _dot(a, _cross(b, c))
