@@ -80,6 +80,7 @@ def test_fly_published_robot_gives_the_published_objectives(shared_data):
 
 def test_new_study_runs_from_its_folder(tmp_path, monkeypatch):
     assert codesign("new", str(tmp_path / "mine")).returncode == 0
+    monkeypatch.delenv("CODESIGN_CACHE", raising=False)  # a developer may have set it
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     arguments = ("--population", "4", "--generations", "2", "--out", str(tmp_path / "run"), "--json")
     result = codesign("optimize", "--study", str(tmp_path / "mine"), *arguments, cwd=tmp_path)
