@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -220,29 +220,33 @@ def _mesh(
     """
     labelled, selections = label_surface(surface, places)
     if not smooth:
-        return *_mesh_either(labelled, surface, selections, places, size), None
+        return *_mesh_either(labelled, lambda: surface, selections, places, size), None
     curved, report = fem.smooth_surface(labelled)
     try:
-        plain = fem.smooth_surface(surface)[0]
-        return *_mesh_either(curved, plain, selections, places, size), _smoothing(report)
+        return *_mesh_either(curved, lambda: fem.smooth_surface(surface)[0], selections, places, size), _smoothing(
+            report
+        )
     except MeshError as error:
         reason = f"the curved surface cannot be meshed ({error}): facets taken literally"
         unused = {"facets": 0, "max_distance": 0.0, "volume_change": 0.0, "left": report.facets, "reason": reason}
-        return *_mesh_either(labelled, surface, selections, places, size), unused
+        return *_mesh_either(labelled, lambda: surface, selections, places, size), unused
 
 
 def _mesh_either(
     labelled: fem.SurfaceMesh,
-    plain: fem.SurfaceMesh,
+    plain: Callable[[], fem.SurfaceMesh],
     selections: list[fem.Selection],
     places: Sequence[Place],
     size: float,
 ) -> tuple[fem.TetMesh, list[fem.Selection]]:
-    """The mesh and the places on it, with exact borders unless they are too ragged for the edge length."""
+    """The mesh and the places on it, with exact borders unless they are too ragged for the edge length.
+
+    plain: makes the surface without the places' borders, which is rarely needed.
+    """
     try:
         return fem.tetrahedralize(labelled, size), selections
     except MeshError:
-        return fem.tetrahedralize(plain, size), [place.on_mesh() for place in places]
+        return fem.tetrahedralize(plain(), size), [place.on_mesh() for place in places]
 
 
 def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:
