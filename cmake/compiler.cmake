@@ -13,9 +13,9 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
 endif()
 
-# codesign_library(name): a static library of every .cpp beside the calling CMakeLists.txt, headers included as "layer/file.hpp".
+# codesign_library(name): a static library of every .cpp at or below the calling CMakeLists.txt, headers included as "layer/file.hpp".
 function(codesign_library name)
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   add_library(${name} STATIC ${sources})
   target_compile_options(${name} PRIVATE -Wall -Wextra -Wshadow -Wconversion
                          $<$<BOOL:${CODESIGN_WARNINGS_AS_ERRORS}>:-Werror>)

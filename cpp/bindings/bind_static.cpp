@@ -2,7 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings/bindings.hpp"
-#include "fem/static_solver.hpp"
+#include "fem/elasticity/static_solver.hpp"
 
 namespace py = pybind11;
 using py::literals::operator""_a;

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "fem/size_field.hpp"
-#include "fem/static_solver.hpp"
-#include "fem/surface_mesh.hpp"
-#include "fem/tet_mesh.hpp"
-#include "fem/tet_mesher.hpp"
+#include "fem/meshing/size_field.hpp"
+#include "fem/elasticity/static_solver.hpp"
+#include "fem/surface/surface_mesh.hpp"
+#include "fem/mesh/tet_mesh.hpp"
+#include "fem/meshing/tet_mesher.hpp"
 
 namespace codesign::fem {
 

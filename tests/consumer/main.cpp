@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "dynamics/urdf.hpp"
-#include "fem/mass_properties.hpp"
+#include "fem/surface/mass_properties.hpp"
 
 // Prints the mass of a one-link robot and the volume of a tetrahedron with three unit edges: 2 and
 // 1/6.

@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "fem/selection.hpp"
-#include "fem/tet_topology.hpp"
+#include "fem/boundary/selection.hpp"
+#include "fem/mesh/tet_topology.hpp"
 
 // The unit cube, nx x ny x nz cells split into six tetrahedra each, its nodes (mid-edge nodes too)
 // moved by a map: straight, distorted or curved quadratic meshes for tests.

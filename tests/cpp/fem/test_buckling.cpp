@@ -6,9 +6,9 @@
 
 #include "box_mesh.hpp"
 #include "errors.hpp"
-#include "fem/block_krylov.hpp"
-#include "fem/static_solver.hpp"
-#include "fem/stiffness.hpp"
+#include "fem/la/block_krylov.hpp"
+#include "fem/elasticity/static_solver.hpp"
+#include "fem/elasticity/stiffness.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;

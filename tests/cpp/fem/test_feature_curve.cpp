@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fem/feature_curve.hpp"
+#include "fem/meshing/feature_curve.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "fem/linear_tets.hpp"
-#include "fem/mesh_quality.hpp"
-#include "fem/tet_neighbours.hpp"
+#include "fem/meshing/linear_tets.hpp"
+#include "fem/mesh/mesh_quality.hpp"
+#include "fem/mesh/tet_neighbours.hpp"
 
 namespace codesign::fem {
 namespace {

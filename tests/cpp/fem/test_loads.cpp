@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "box_mesh.hpp"
-#include "fem/loads.hpp"
+#include "fem/boundary/loads.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fem/quadrature.hpp"
+#include "fem/mesh/quadrature.hpp"
 
 using namespace codesign::fem;
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "box_mesh.hpp"
-#include "fem/recovery.hpp"
-#include "fem/tet10.hpp"
+#include "fem/stress/recovery.hpp"
+#include "fem/mesh/tet10.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;

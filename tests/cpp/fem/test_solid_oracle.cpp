@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "fem/solid_oracle.hpp"
+#include "fem/surface/solid_oracle.hpp"
 
 namespace codesign::fem {
 namespace {

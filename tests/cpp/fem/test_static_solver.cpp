@@ -5,8 +5,8 @@
 
 #include "box_mesh.hpp"
 #include "errors.hpp"
-#include "fem/static_solver.hpp"
-#include "fem/tet10.hpp"
+#include "fem/elasticity/static_solver.hpp"
+#include "fem/mesh/tet10.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;

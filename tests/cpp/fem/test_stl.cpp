@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "fem/stl.hpp"
-#include "fem/surface_check.hpp"
+#include "fem/surface/stl.hpp"
+#include "fem/surface/surface_check.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "fem/surface_check.hpp"
-#include "fem/surface_simplify.hpp"
+#include "fem/surface/surface_check.hpp"
+#include "fem/surface/surface_simplify.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "fem/surface_check.hpp"
-#include "fem/surface_smooth.hpp"
+#include "fem/surface/surface_check.hpp"
+#include "fem/smoothing/surface_smooth.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "box_mesh.hpp"
-#include "fem/stiffness.hpp"
-#include "fem/tet10.hpp"
+#include "fem/elasticity/stiffness.hpp"
+#include "fem/mesh/tet10.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;

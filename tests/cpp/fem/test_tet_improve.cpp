@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fem/mesh_quality.hpp"
-#include "fem/tet_improve.hpp"
+#include "fem/mesh/mesh_quality.hpp"
+#include "fem/meshing/tet_improve.hpp"
 
 namespace codesign::fem {
 namespace {

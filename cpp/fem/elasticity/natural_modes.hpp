@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fem/la/cholesky.hpp"
+#include "fem/mesh/material.hpp"
+#include "fem/la/ordering.hpp"
+#include "fem/elasticity/stiffness.hpp"
+#include "fem/boundary/supports.hpp"
+#include "fem/mesh/tet_mesh.hpp"
+
+namespace codesign::fem {
+
+// Undamped free vibration, K x = (2 pi f)² M x.
+struct NaturalModes {
+  Eigen::VectorXd frequency;  // (k) Hz, ascending; 0 for rigid motions
+  Eigen::MatrixXd shape;      // (3 n, k) column: x y z of node 0, then node 1 ...; modal mass 1 kg
+};
+
+// The lowest modes of a part on its supports (prescribed displacements count as held), or free:
+// then the rigid motions come first. Throws SolverError, MeshError; std::invalid_argument if the
+// material has no density or count < 1.
+NaturalModes natural_modes(const TetMesh& mesh, const Material& material,
+                           const std::vector<Support>& supports, int count);
+
+// The same from a factor of K + shift M, by the largest eigenvalues of (K + shift M)⁻¹ M.
+NaturalModes modes_of_factor(const NodePattern& pattern, const LowerMatrix& mass,
+                             const CholeskyFactor& factor, double shift, int count);
+
+}  // namespace codesign::fem

@@ -1,0 +1,224 @@
+#include "fem/elasticity/static_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "errors.hpp"
+#include "fem/la/cholesky.hpp"
+#include "fem/la/ordering.hpp"
+#include "fem/stress/recovery.hpp"
+#include "fem/boundary/rigid_motions.hpp"
+#include "fem/elasticity/stiffness.hpp"
+#include "fem/la/two_level.hpp"
+
+namespace codesign::fem {
+
+namespace {
+
+constexpr int kMaxRefinements = 3;
+constexpr double kGradientTolerance = 1e-11;  // of conjugate gradients, see there
+constexpr int kMaxIterations = 500;
+// Multiply-adds of a factorisation that takes as long as conjugate gradients on the same part.
+constexpr double kDirectOperations = 1.5e10;
+
+void check_mesh(const TetMesh& mesh) {
+  if (mesh.tets.rows() == 0) throw MeshError("the mesh has no elements");
+  if (!mesh.nodes.allFinite()) throw MeshError("the mesh has nodes that are not finite");
+  if (mesh.tets.minCoeff() < 0 || mesh.tets.maxCoeff() >= mesh.nodes.rows() ||
+      (mesh.boundary.size() > 0 &&
+       (mesh.boundary.minCoeff() < 0 || mesh.boundary.maxCoeff() >= mesh.nodes.rows()))) {
+    throw MeshError("the mesh refers to nodes that do not exist");
+  }
+}
+
+void check_settings(const StaticSettings& s) {
+  if (!(s.exclusion_distance >= 0)) throw std::invalid_argument("exclusion_distance must be >= 0");
+  if (!(s.stress_volume > 0)) throw std::invalid_argument("stress_volume must be > 0");
+  if (s.copies < 1) throw std::invalid_argument("copies must be >= 1");
+  if (!(s.residual_tolerance > 0)) throw std::invalid_argument("residual_tolerance must be > 0");
+}
+
+bool solves_directly(const NodePattern& pattern, const StaticSettings& settings) {
+  if (settings.solver != LinearSolver::automatic) return settings.solver == LinearSolver::direct;
+  const double entries = pattern.supernodes.entries;
+  return sizeof(double) * entries <= settings.memory_limit &&
+         entries < std::numeric_limits<int>::max() &&
+         pattern.supernodes.operations <= kDirectOperations;
+}
+
+}  // namespace
+
+struct StaticSystem::Data {
+  TetMesh mesh;
+  Material material;
+  std::vector<Support> supports;
+  StaticSettings settings;
+  Constraints constraints;
+  NodePattern pattern;
+  std::unique_ptr<CholeskyFactor> factor;  // or, if it would be too large:
+  LowerMatrix stiffness;
+  std::unique_ptr<TwoLevelPreconditioner> preconditioner;
+  std::vector<int> clamped;
+
+  Eigen::VectorXd gather(const Eigen::VectorXd& nodal) const {
+    Eigen::VectorXd result(pattern.equations());
+    for (std::size_t d = 0; d < pattern.equation.size(); ++d) {
+      if (pattern.equation[d] >= 0) result[pattern.equation[d]] = nodal[static_cast<int>(d)];
+    }
+    return result;
+  }
+
+  void add_free(const Eigen::VectorXd& free, Eigen::VectorXd& nodal) const {
+    for (std::size_t d = 0; d < pattern.equation.size(); ++d) {
+      if (pattern.equation[d] >= 0) nodal[static_cast<int>(d)] += free[pattern.equation[d]];
+    }
+  }
+
+  Eigen::VectorXd solve_free(const Eigen::VectorXd& force, int& iterations) const {
+    if (factor) return factor->solve(force);
+    ConjugateGradientResult result =
+        conjugate_gradients(stiffness, *preconditioner, force, kGradientTolerance, kMaxIterations);
+    iterations += result.iterations;
+    return std::move(result.solution);
+  }
+
+  // Displacement with iterative refinement; internal is left as its internal forces.
+  Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal, double& residual,
+                           int& iterations) const {
+    Eigen::VectorXd u = constraints.displacement;
+    internal = internal_forces(mesh, material, u).sum;
+    residual = 0.0;
+    if (pattern.equations() == 0) return u;
+    if (load.isZero(0.0) && internal.isZero(0.0)) return u;
+    for (int step = 0; step <= kMaxRefinements; ++step) {
+      const Eigen::VectorXd correction = solve_free(gather(load - internal), iterations);
+      add_free(correction, u);
+      InternalForces forces = internal_forces(mesh, material, u);
+      internal = std::move(forces.sum);
+      const double scale = std::max(load.norm(), forces.size.norm());
+      residual = gather(load - internal).norm() / scale;
+      if (residual <= settings.residual_tolerance) return u;
+    }
+    std::ostringstream text;
+    text << "the relative residual " << residual << " misses the tolerance "
+         << settings.residual_tolerance << ": the model is too badly conditioned";
+    throw SolverError(text.str());
+  }
+
+  void read_forces(const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
+                   StaticResult& r) const {
+    r.reactions = Points::Zero(mesh.nodes.rows(), 3);
+    r.support_forces = Points::Zero(static_cast<Eigen::Index>(supports.size()), 3);
+    for (std::size_t d = 0; d < constraints.support.size(); ++d) {
+      const int support = constraints.support[d];
+      if (support < 0) continue;
+      const Eigen::Index i = static_cast<Eigen::Index>(d);
+      r.reactions(i / 3, i % 3) = internal[i] - load[i];
+      r.support_forces(support, i % 3) += internal[i] - load[i];
+    }
+  }
+
+  void read_stress(const std::vector<Load>& loads, const Eigen::VectorXd& u,
+                   StaticResult& r) const {
+    const PointStresses points = point_stresses(mesh, material, u);
+    r.stress = recover_stress(mesh, points);
+    r.von_mises = codesign::fem::von_mises(r.stress);
+    const double distance = settings.exclusion_distance;
+    r.stress_50 =
+        stress_of_volume(mesh, points, clamped, distance, settings.stress_volume / settings.copies);
+    RecoveryError recovery = recovery_error(mesh, material, u, r.stress);
+    const PeakExclusion exclusion{clamped, loaded_triangles(mesh, loads), distance};
+    const PeakStress peak = codesign::fem::peak_stress(mesh, r.stress, exclusion);
+    r.stress_error = peak_stress_error(mesh, points, recovery, peak);
+    r.energy_error = recovery.relative_energy;
+    r.element_error = std::move(recovery.element);
+    r.peak_stress = peak.value;
+    r.peak_position = peak.position;
+    r.safety_factor = peak.value > 0 ? material.yield_strength / peak.value
+                                     : std::numeric_limits<double>::infinity();
+  }
+};
+
+StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
+                           StaticSettings settings)
+    : data_(std::make_unique<Data>()) {
+  check_mesh(mesh);
+  check_material(material);
+  check_settings(settings);
+  Data& d = *data_;
+  d.mesh = std::move(mesh);
+  d.material = std::move(material);
+  d.supports = std::move(supports);
+  d.settings = settings;
+  d.constraints = constrain(d.mesh, d.supports);
+  require_held(d.mesh, d.constraints);
+  d.clamped = clamped_triangles(d.mesh, d.supports);
+  d.pattern = order_nodes(d.mesh, d.constraints);
+  if (d.pattern.equations() == 0) return;
+  LowerMatrix stiffness = assemble_stiffness(d.mesh, d.material, d.pattern);
+  if (solves_directly(d.pattern, settings)) {
+    d.factor = std::make_unique<CholeskyFactor>(d.pattern, stiffness);
+  } else {
+    d.stiffness = std::move(stiffness);
+    d.preconditioner = std::make_unique<TwoLevelPreconditioner>(d.mesh, d.material, d.constraints,
+                                                                d.pattern, d.stiffness);
+  }
+}
+
+StaticSystem::~StaticSystem() = default;
+StaticSystem::StaticSystem(StaticSystem&&) noexcept = default;
+StaticSystem& StaticSystem::operator=(StaticSystem&&) noexcept = default;
+
+const TetMesh& StaticSystem::mesh() const { return data_->mesh; }
+
+StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
+  const Data& d = *data_;
+  const Eigen::VectorXd load = load_vector(d.mesh, d.material, loads);
+  StaticResult r;
+  Eigen::VectorXd internal;
+  const Eigen::VectorXd u = d.displace(load, internal, r.residual, r.iterations);
+  r.displacement = Eigen::Map<const Points>(u.data(), d.mesh.nodes.rows(), 3);
+  r.max_displacement = r.displacement.rowwise().norm().maxCoeff();
+  r.work = d.settings.copies * load.dot(u);
+  r.strain_energy = 0.5 * d.settings.copies * internal.dot(u);
+  r.equations = d.pattern.equations();
+  d.read_forces(load, internal, r);
+  d.read_stress(loads, u, r);
+  return r;
+}
+
+NaturalModes StaticSystem::natural_modes(int count) const {
+  const Data& d = *data_;
+  if (!d.factor) return codesign::fem::natural_modes(d.mesh, d.material, d.supports, count);
+  if (!(d.material.density > 0)) throw std::invalid_argument("modes need a density above 0");
+  return modes_of_factor(d.pattern, assemble_mass(d.mesh, d.material, d.pattern), *d.factor, 0.0,
+                         count);
+}
+
+Points StaticSystem::displacement(const std::vector<Load>& loads) const {
+  const Data& d = *data_;
+  Eigen::VectorXd internal;
+  double residual = 0.0;
+  int iterations = 0;
+  const Eigen::VectorXd u =
+      d.displace(load_vector(d.mesh, d.material, loads), internal, residual, iterations);
+  return Eigen::Map<const Points>(u.data(), d.mesh.nodes.rows(), 3);
+}
+
+BucklingModes StaticSystem::buckling_modes(const Points& displacement, int count) const {
+  const Data& d = *data_;
+  if (!d.factor) {
+    return codesign::fem::buckling_modes(d.mesh, d.material, d.supports, displacement, count);
+  }
+  return buckling_of_factor(d.mesh, d.material, d.pattern, *d.factor, displacement, count);
+}
+
+StaticResult solve_static(const StaticModel& model) {
+  return StaticSystem(model.mesh, model.material, model.supports, model.settings)
+      .solve(model.loads);
+}
+
+}  // namespace codesign::fem

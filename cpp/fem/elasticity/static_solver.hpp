@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "fem/elasticity/buckling.hpp"
+#include "fem/boundary/loads.hpp"
+#include "fem/mesh/material.hpp"
+#include "fem/elasticity/natural_modes.hpp"
+#include "fem/stress/peak_stress.hpp"
+#include "fem/stress/stress.hpp"
+#include "fem/boundary/supports.hpp"
+#include "fem/mesh/tet_mesh.hpp"
+
+// Linear elasticity of one part: find u with
+//
+//   div sigma(u) + b = 0 in the part,   sigma = lambda tr(e) I + 2 mu e,  e = sym grad u
+//   components of u given on supports,  sigma n = t on loaded faces
+//
+// by quadratic tetrahedra: order, assemble, factorise, solve, check the residual, recover stress.
+namespace codesign::fem {
+
+// automatic: direct unless the factor is larger than the memory limit or takes longer than
+// conjugate gradients for one load case; both are known before it is computed.
+enum class LinearSolver { automatic, direct, iterative };
+
+struct StaticSettings {
+  double exclusion_distance = 3e-3;  // m, see PeakExclusion
+  double stress_volume = 50e-9;      // m³ of the whole part, see StaticResult::stress_50
+  int copies = 1;                    // 2 for a half model: work and stress_volume count the part
+  double residual_tolerance = 1e-9;  // relative
+  LinearSolver solver = LinearSolver::automatic;
+  double memory_limit = 4e9;  // bytes for the factor
+};
+
+struct StaticModel {
+  TetMesh mesh;
+  Material material;
+  std::vector<Support> supports;
+  std::vector<Load> loads;
+  StaticSettings settings;
+};
+
+struct StaticResult {
+  Points displacement;            // (n, 3) m
+  Stresses stress;                // (n, 6) Pa, recovered at the nodes
+  Eigen::VectorXd von_mises;      // (n) Pa
+  Points reactions;               // (n, 3) N, force of the supports on the part
+  Points support_forces;          // (supports, 3) N, their sum over each support
+  double work = 0.0;              // J: load times displacement, of the whole part
+  double strain_energy = 0.0;     // J, of the whole part; half the work if no support is moved
+  double max_displacement = 0.0;  // m
+  double peak_stress = 0.0;       // Pa, see peak_stress.hpp
+  double stress_error = 0.0;      // Pa, estimated error of peak_stress
+  double energy_error = 0.0;      // estimated relative error in the energy norm
+  Eigen::VectorXd element_error;  // (m) Pa, see RecoveryError
+  Eigen::Vector3d peak_position = Eigen::Vector3d::Zero();
+  double stress_50 = 0.0;      // Pa, von Mises exceeded in stress_volume
+  double safety_factor = 0.0;  // yield strength / peak_stress
+  double residual = 0.0;       // |K u - f| over the free components, relative to the larger of the
+                               // load and the forces that flow through the nodes
+  int equations = 0;
+  int iterations = 0;  // of conjugate gradients; 0: solved by the factor
+};
+
+// A model ordered, assembled and factorised once, for any number of load cases.
+class StaticSystem {
+ public:
+  // Throws SolverError naming the free rigid motions if the supports do not hold the part, and
+  // MeshError for inverted elements.
+  StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
+               StaticSettings settings = {});
+  ~StaticSystem();
+  StaticSystem(StaticSystem&&) noexcept;
+  StaticSystem& operator=(StaticSystem&&) noexcept;
+
+  // Throws SolverError if the residual misses the tolerance.
+  StaticResult solve(const std::vector<Load>& loads) const;
+
+  // The lowest modes on the supports, from the same factor if there is one. Throws SolverError,
+  // std::invalid_argument: no density, count < 1.
+  NaturalModes natural_modes(int count) const;
+
+  // The displacement (n, 3) m of a load case alone. Throws SolverError as solve does.
+  Points displacement(const std::vector<Load>& loads) const;
+
+  // The lowest buckling modes under the load case that gives a displacement, from the same factor
+  // if there is one. Throws SolverError, std::invalid_argument: count < 1.
+  BucklingModes buckling_modes(const Points& displacement, int count) const;
+
+  const TetMesh& mesh() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+StaticResult solve_static(const StaticModel& model);
+
+}  // namespace codesign::fem

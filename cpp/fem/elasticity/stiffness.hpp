@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fem/mesh/material.hpp"
+#include "fem/la/lower_matrix.hpp"
+#include "fem/la/ordering.hpp"
+#include "fem/mesh/tet10.hpp"
+#include "fem/mesh/tet_mesh.hpp"
+
+namespace codesign::fem {
+
+using ElementMatrix = Eigen::Matrix<double, 30, 30>;  // equation 3 * local node + component
+
+// Stiffness of one element with full integration, N/m.
+void element_stiffness(const TetNodes& x, double lambda, double mu, ElementMatrix& k);
+
+// Stiffness of the free components in elimination order. Throws MeshError if an element is
+// inverted (non-positive Jacobian at an integration point).
+LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
+                               const NodePattern& pattern);
+
+// Consistent mass of the free components, kg, with the same structure.
+LowerMatrix assemble_mass(const TetMesh& mesh, const Material& material,
+                          const NodePattern& pattern);
+
+// Geometric (initial-stress) stiffness of the free components, N/m, with the same structure:
+// integral of (grad N_a · sigma · grad N_b) I, sigma the stress of a displacement field (3 n, m).
+// 14 points: the integrand is of degree 3 on a straight element.
+LowerMatrix assemble_geometric_stiffness(const TetMesh& mesh, const Material& material,
+                                         const Eigen::VectorXd& displacement,
+                                         const NodePattern& pattern);
+
+// Stiffness seen by displacements that are linear over each element (exact also on curved ones):
+// `pattern` numbers corner nodes only, mid-edge nodes follow the mean of their ends where they are
+// free in `constraints`. Symmetric positive definite wherever the stiffness is.
+LowerMatrix assemble_linear_stiffness(const TetMesh& mesh, const Material& material,
+                                      const Constraints& constraints, const NodePattern& pattern);
+
+// Nodal forces with which the elements resist a displacement field: integral of Bᵀ sigma, from
+// stresses instead of matrices.
+struct InternalForces {
+  Eigen::VectorXd sum;   // (3 n) over the elements of a node
+  Eigen::VectorXd size;  // (3 n) sum of absolute values: what flows through the node
+};
+InternalForces internal_forces(const TetMesh& mesh, const Material& material,
+                               const Eigen::VectorXd& displacement);
+
+}  // namespace codesign::fem

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+#include "fem/la/lower_matrix.hpp"
+
+namespace codesign::fem {
+
+// A times the columns of v, for an operator A that is self-adjoint in the inner product of a
+// positive definite matrix M: vᵀ M A w = wᵀ M A v. The columns of mv are M v.
+using SelfAdjoint =
+    std::function<Eigen::MatrixXd(const Eigen::MatrixXd& v, const Eigen::MatrixXd& mv)>;
+
+struct WantedEigenvalues {
+  Eigen::Index largest = 1;   // how many of the greatest
+  Eigen::Index smallest = 0;  // how many of the least
+  double tolerance = 1e-9;    // relative change of a value that stands still
+  double negligible = 0.0;    // a value of smaller magnitude need only be seen to stay so small
+};
+
+// The largest eigenvalues, descending, then the smallest, ascending; vectors are columns,
+// orthonormal in the inner product.
+struct Eigenpairs {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+// Block Krylov method with full orthogonalisation, until the wanted eigenvalues stand still.
+// inner: M. start: a block of vectors, smooth ones for elliptic problems. Throws SolverError if the
+// values do not come to rest.
+Eigenpairs extreme_eigenpairs(const LowerMatrix& inner, const SelfAdjoint& apply,
+                              Eigen::MatrixXd start, const WantedEigenvalues& wanted);
+
+// Numbers between -1 and 1, the same in every run: a block to start from.
+Eigen::MatrixXd random_block(Eigen::Index rows, Eigen::Index columns);
+
+}  // namespace codesign::fem

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "fem/mesh/tet_mesh.hpp"
+
+namespace codesign::fem {
+
+using Tets4 = Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
+// Corner columns of the four sides of a tetrahedron, counter-clockwise seen from outside; side k is
+// opposite to corner k.
+inline constexpr int kTetSides[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+// neighbours[t][k]: the tetrahedron across side k of tetrahedron t, or -1 on the boundary. Throws
+// MeshError if three tetrahedra share a side.
+using TetNeighbours = std::vector<std::array<int, 4>>;
+TetNeighbours tet_neighbours(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>>& tets);
+
+// Piece of each tetrahedron (connected through sides), numbered from 0, and the number of pieces.
+std::pair<std::vector<int>, int> find_pieces(const TetNeighbours& neighbours);
+
+}  // namespace codesign::fem

@@ -1,0 +1,357 @@
+// The only file that sees CGAL's mesher. It works on SolidDomain, which answers its questions about
+// the solid by our own SolidOracle and FeatureCurve: half the meshing time of CGAL's polyhedral
+// domain, whose queries fall back on exact arithmetic (forearm support 0.59 -> 0.30 s).
+#include "fem/meshing/delaunay_mesher.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/Random.h>
+#include <CGAL/make_mesh_3.h>
+#include <time.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "errors.hpp"
+#include "fem/meshing/feature_curve.hpp"
+#include "fem/surface/solid_oracle.hpp"
+#include "fem/mesh/tet_neighbours.hpp"
+
+namespace codesign::fem {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Vector3d to_vector(const Point& p) { return {p.x(), p.y(), p.z()}; }
+Point to_point(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+// CGAL's concept MeshDomainWithFeatures_3. Indices are plain integers: patches from 1, curves and
+// corners by their position in the lists; the only subdomain is 1.
+class SolidDomain {
+ public:
+  using R = Kernel;
+  using Has_features = CGAL::Tag_true;
+  using FT = Kernel::FT;
+  using Point_3 = Point;
+  using Segment_3 = Kernel::Segment_3;
+  using Ray_3 = Kernel::Ray_3;
+  using Line_3 = Kernel::Line_3;
+  using Vector_3 = Kernel::Vector_3;
+  using Sphere_3 = Kernel::Sphere_3;
+  using Index = int;
+  using Subdomain_index = int;
+  using Surface_patch_index = int;
+  using Curve_index = int;
+  using Corner_index = int;
+  using Subdomain = boost::optional<int>;
+  using Surface_patch = boost::optional<int>;
+  using Intersection = std::tuple<Point, int, int>;  // point, patch, dimension (0: none)
+
+  SolidDomain(const SurfaceMesh& surface, const Patches& patches,
+              const std::vector<FeatureLine>& lines, const SolidOracle& oracle)
+      : patches_(patches), oracle_(oracle) {
+    std::map<int, int> corner_of;  // point of the surface -> corner
+    const auto add_corner = [&](int point) {
+      const auto [at, fresh] = corner_of.try_emplace(point, static_cast<int>(corners_.size()));
+      if (fresh) corners_.push_back(to_point(surface.points.row(point).transpose()));
+      return at->second;
+    };
+    for (const FeatureLine& line : lines) {
+      std::vector<Vector3d> points;
+      for (const int i : line.points) points.push_back(surface.points.row(i).transpose());
+      curves_.emplace_back(std::move(points));
+      const bool closed = line.points.front() == line.points.back();
+      ends_.emplace_back(closed && !line.starts_at_corner ? -1 : add_corner(line.points.front()),
+                         closed && !line.starts_at_corner ? -1 : add_corner(line.points.back()));
+    }
+  }
+
+  CGAL::Bbox_3 bbox() const {
+    const Vector3d& a = oracle_.lower();
+    const Vector3d& b = oracle_.upper();
+    return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+  }
+
+  struct Is_in_domain {
+    const SolidDomain& domain;
+    Subdomain operator()(const Point& p) const {
+      return domain.oracle_.contains(to_vector(p)) ? Subdomain(1) : Subdomain();
+    }
+  };
+  Is_in_domain is_in_domain_object() const { return {*this}; }
+
+  struct Construct_intersection {
+    const SolidDomain& domain;
+    Intersection operator()(const Segment_3& s) const {
+      // Measured from the end nearer to the solid: the other one may be very far away.
+      const Vector3d a = to_vector(s.source()), b = to_vector(s.target());
+      const Vector3d middle = 0.5 * (domain.oracle_.lower() + domain.oracle_.upper());
+      const bool from_a = (a - middle).squaredNorm() <= (b - middle).squaredNorm();
+      return domain.intersection(from_a ? a : b, from_a ? Vector3d(b - a) : Vector3d(a - b), 0.0,
+                                 1.0);
+    }
+    Intersection operator()(const Ray_3& r) const {
+      const Vector3d a = to_vector(r.source());
+      return domain.intersection(a, to_vector(r.second_point()) - a, 0.0, kInfinity);
+    }
+    Intersection operator()(const Line_3& l) const {
+      const Vector3d a = to_vector(l.point(0));
+      return domain.intersection(a, to_vector(l.point(1)) - a, -kInfinity, kInfinity);
+    }
+  };
+  Construct_intersection construct_intersection_object() const { return {*this}; }
+
+  Index index_from_surface_patch_index(int patch) const { return patch; }
+  Index index_from_subdomain_index(int subdomain) const { return subdomain; }
+  Index index_from_curve_index(int curve) const { return curve; }
+  Index index_from_corner_index(int corner) const { return corner; }
+  int surface_patch_index(Index index) const { return index; }
+  int subdomain_index(Index index) const { return index; }
+  int curve_index(Index index) const { return index; }
+  int corner_index(Index index) const { return index; }
+
+  template <class Out>
+  Out get_corners(Out out) const {
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      *out++ = std::pair(static_cast<int>(i) + 1, corners_[i]);
+    return out;
+  }
+  template <class Out>
+  Out get_curves(Out out) const {
+    for (std::size_t i = 0; i < curves_.size(); ++i) {
+      const int index = static_cast<int>(i) + 1;
+      const auto [p, q] = ends_[i];
+      const std::pair<Point, Index> first(to_point(curves_[i].points().front()),
+                                          p < 0 ? index : p + 1);
+      const std::pair<Point, Index> last(to_point(curves_[i].points().back()),
+                                         q < 0 ? index : q + 1);
+      *out++ = std::make_tuple(index, first, last);
+    }
+    return out;
+  }
+  bool is_loop(int curve) const { return at(curve).is_closed(); }
+  FT curve_length(int curve) const { return at(curve).length(); }
+  FT curve_segment_length(const Point& p, const Point& q, int curve,
+                          CGAL::Orientation orientation) const {
+    return at(curve).length_between(to_vector(p), to_vector(q), orientation == CGAL::POSITIVE);
+  }
+  Point construct_point_on_curve(const Point& p, int curve, FT distance) const {
+    return to_point(at(curve).point_at(to_vector(p), distance));
+  }
+  CGAL::Sign distance_sign(const Point& p, const Point& q, int curve) const {
+    return CGAL::sign(at(curve).position(to_vector(q)) - at(curve).position(to_vector(p)));
+  }
+  CGAL::Sign distance_sign_along_loop(const Point& p, const Point& q, const Point& r,
+                                      int curve) const {
+    const double pq = at(curve).length_between(to_vector(p), to_vector(q), true);
+    const double pr = at(curve).length_between(to_vector(p), to_vector(r), true);
+    return pq <= pr ? CGAL::POSITIVE : CGAL::NEGATIVE;
+  }
+  bool is_curve_segment_covered(int curve, CGAL::Orientation orientation, const Point& p,
+                                const Point& q, FT squared_radius_p, FT squared_radius_q) const {
+    return at(curve).is_covered(to_vector(p), squared_radius_p, to_vector(q), squared_radius_q,
+                                orientation == CGAL::POSITIVE);
+  }
+
+ private:
+  const FeatureCurve& at(int curve) const { return curves_[static_cast<std::size_t>(curve - 1)]; }
+
+  Intersection intersection(const Vector3d& base, const Vector3d& direction, double first,
+                            double last) const {
+    const auto piece = oracle_.clip(base, direction, first, last);
+    if (!piece) return {};
+    const auto hit = oracle_.hit(piece->a, piece->b);
+    if (!hit) return {};
+    const int patch = patches_.of_triangle[static_cast<std::size_t>(hit->triangle)] + 1;
+    return {to_point(hit->point), patch, 2};
+  }
+
+  const Patches& patches_;
+  const SolidOracle& oracle_;
+  std::vector<Point> corners_;
+  std::vector<FeatureCurve> curves_;
+  std::vector<std::pair<int, int>> ends_;  // corners at the ends of a curve, -1: none
+};
+
+using Triangulation = CGAL::Mesh_triangulation_3<SolidDomain>::type;
+using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, int, int>;
+using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+using Control = CGAL::parameters::internal::Mesh_3_options;
+
+double thread_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// Stops a run that takes too long. The mesher asks for the wanted size in all of its loops, so the
+// size field is where the clock is read.
+struct Watch {
+  double deadline, limit;
+  unsigned calls = 0;
+
+  void check() {
+    if ((++calls & 0x3F) == 0 && thread_seconds() > deadline) stop();
+  }
+  [[noreturn]] void stop() const {
+    throw MeshError("meshing was stopped after " + std::to_string(limit) +
+                    " s (time_limit): a larger edge length or a cleaner surface is needed");
+  }
+};
+
+struct SizingField {
+  using FT = Kernel::FT;
+  using Point_3 = Point;
+  using Index = SolidDomain::Index;
+
+  const SizeField* field;
+  Watch* watch;
+  double factor;
+
+  FT operator()(const Point& p, int, const Index&) const {
+    watch->check();
+    return factor * size_at(*field, to_vector(p));
+  }
+};
+
+// A few triangles of a shell, far from each other.
+std::vector<int> spread_triangles(const SurfaceMesh& surface, const std::vector<int>& shell,
+                                  int which) {
+  const auto centre = [&](int t) -> Vector3d {
+    return (corner(surface, t, 0) + corner(surface, t, 1) + corner(surface, t, 2)) / 3.0;
+  };
+  std::vector<int> members, chosen;
+  for (std::size_t t = 0; t < shell.size(); ++t)
+    if (shell[t] == which) members.push_back(static_cast<int>(t));
+  std::vector<double> distance(members.size(), kInfinity);
+  for (std::size_t next = 0; chosen.size() < 12 && distance[next] > 0.0;) {
+    chosen.push_back(members[next]);
+    const Vector3d p = centre(members[next]);
+    for (std::size_t i = 0; i < members.size(); ++i)
+      distance[i] = std::min(distance[i], (centre(members[i]) - p).squaredNorm());
+    next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) -
+                                    distance.begin());
+  }
+  return chosen;
+}
+
+void insert_points(const SurfaceMesh& surface, const Patches& patches, int shell,
+                   Complex& complex) {
+  for (const int t : spread_triangles(surface, patches.shell, shell)) {
+    const Vector3d p =
+        (corner(surface, t, 0) + corner(surface, t, 1) + corner(surface, t, 2)) / 3.0;
+    const auto vertex = complex.triangulation().insert(Triangulation::Weighted_point(to_point(p)));
+    if (vertex == Complex::Vertex_handle()) continue;  // hidden by a protecting ball
+    complex.set_dimension(vertex, 2);
+    complex.set_index(vertex, patches.of_triangle[static_cast<std::size_t>(t)] + 1);
+  }
+}
+
+// Protecting balls on the feature lines. The refinement looks for surface where it has points
+// already, so shells without lines (a round cavity) get some.
+void start_complex(const SurfaceMesh& surface, const Patches& patches, const SolidDomain& domain,
+                   const Criteria& criteria, const Control& control, Complex& complex) {
+  CGAL::Mesh_3::internal::init_c3t3_with_features(
+      complex, domain, criteria, control.nonlinear_growth_of_balls,
+      control.maximal_number_of_vertices, control.pointer_to_error_code);
+  std::vector<bool> has_line(static_cast<std::size_t>(patches.shells), false);
+  for (std::size_t t = 0; t < patches.line.size(); ++t)
+    for (const bool line : patches.line[t])
+      if (line) has_line[static_cast<std::size_t>(patches.shell[t])] = true;
+  for (int shell = 0; shell < patches.shells; ++shell)
+    if (!has_line[static_cast<std::size_t>(shell)]) insert_points(surface, patches, shell, complex);
+  bool surface_found = false;
+  if (complex.triangulation().dimension() == 3) {
+    CGAL::Mesh_3::C3T3_helpers<Complex, SolidDomain>(complex, domain).update_restricted_facets();
+    surface_found = complex.number_of_facets() > 0;
+  }
+  if (surface_found) return;
+  for (int shell = 0; shell < patches.shells; ++shell)
+    insert_points(surface, patches, shell, complex);
+}
+
+// The patch of a boundary side; the nearest one where the complex does not know it.
+int label_of(const Complex& complex, Complex::Cell_handle cell, int k, const Patches& patches,
+             const SolidOracle& oracle) {
+  if (const int patch = cell->surface_patch_index(k); complex.is_in_complex(cell, k))
+    return patch - 1;
+  Vector3d centre = Vector3d::Zero();
+  for (const int i : kTetSides[k]) {
+    const auto& p = cell->vertex(i)->point();
+    centre += Vector3d(p.x(), p.y(), p.z()) / 3.0;
+  }
+  return patches.of_triangle[static_cast<std::size_t>(oracle.nearest(centre, -1).triangle)];
+}
+
+LinearTets extract(const Complex& complex, const Patches& patches, const SolidOracle& oracle) {
+  LinearTets mesh;
+  std::unordered_map<const void*, int> index;
+  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end();
+       ++cell) {
+    std::array<int, 4> tet, labels;
+    for (int k = 0; k < 4; ++k) {
+      const auto vertex = cell->vertex(k);
+      const auto [at, fresh] = index.try_emplace(&*vertex, static_cast<int>(mesh.points.size()));
+      if (fresh) {
+        const auto& p = vertex->point();
+        mesh.points.emplace_back(p.x(), p.y(), p.z());
+        mesh.dimension.push_back(complex.in_dimension(vertex));
+      }
+      tet[static_cast<std::size_t>(k)] = at->second;
+      labels[static_cast<std::size_t>(k)] = complex.is_in_complex(cell->neighbor(k))
+                                                ? -1
+                                                : label_of(complex, cell, k, patches, oracle);
+    }
+    mesh.tets.push_back(tet);
+    mesh.side_label.push_back(labels);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
+                         const std::vector<FeatureLine>& lines, const SolidOracle& oracle,
+                         const SizeField& size, const MeshOptions& options) {
+  CGAL::get_default_random() = CGAL::Random(0);  // the same mesh in every run
+  Watch watch{thread_seconds() + options.time_limit, options.time_limit};
+  const SizingField length{&size, &watch, 1.0};
+  const SizingField distance{&size, &watch, options.facet_distance};
+  CGAL::Mesh_error_code error = CGAL::CGAL_MESH_3_NO_ERROR;
+  namespace set = CGAL::parameters;
+  try {
+    const SolidDomain domain(surface, patches, lines, oracle);
+    const Criteria criteria(
+        set::edge_size = length, set::facet_size = length,
+        set::facet_angle = options.facet_angle / kDegree, set::facet_distance = distance,
+        set::cell_radius_edge_ratio = options.radius_edge, set::cell_size = length);
+    Control control;
+    control.maximal_number_of_vertices = options.max_vertices;
+    control.pointer_to_error_code = &error;
+    Complex complex;
+    start_complex(surface, patches, domain, criteria, control, complex);
+    CGAL::refine_mesh_3(complex, domain, criteria, set::no_exude(), set::no_perturb(),
+                        set::no_odt(), set::no_lloyd(), set::no_reset_c3t3(), control,
+                        set::non_manifold());
+    if (error == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED)
+      throw MeshError("the mesh would need more than " + std::to_string(options.max_vertices) +
+                      " vertices (max_vertices): a larger edge length is needed");
+    return extract(complex, patches, oracle);
+  } catch (const CGAL::Failure_exception& e) {
+    throw MeshError(std::string("the mesher broke down: ") + e.what());
+  }
+}
+
+}  // namespace codesign::fem

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fem/surface/surface_mesh.hpp"
+
+namespace codesign::fem {
+
+// A polyline (or a single point) near which elements are small.
+struct SizeSource {
+  Points points;  // (k, 3) m, k >= 1
+  double size;    // edge length within `radius` of the polyline, m
+  double growth;  // increase of the edge length per metre of distance beyond `radius`
+  double radius;  // m
+};
+
+// Edge length s(x) = min(base, size + growth · max(0, distance - radius)) over all sources.
+struct SizeField {
+  double base;  // m
+  std::vector<SizeSource> sources;
+};
+
+// Throws std::invalid_argument: base or a size not positive, growth or radius negative, no points.
+void check_size_field(const SizeField& field);
+
+// Edge length wanted at `p`. [m]
+double size_at(const SizeField& field, const Eigen::Vector3d& p);
+
+// The smallest edge length anywhere. [m]
+double smallest_size(const SizeField& field);
+
+}  // namespace codesign::fem

@@ -1,0 +1,108 @@
+#include "fem/surface/surface_check.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <unordered_map>
+
+#include "errors.hpp"
+#include "fem/surface/stl.hpp"
+
+namespace codesign::fem {
+namespace {
+
+constexpr double kLargestExtent = 1e4;      // m
+constexpr double kSmallestExtent = 1e-7;    // m
+constexpr double kDegenerateHeight = 1e-9;  // of the extent
+
+std::string place(const Eigen::RowVector3d& p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g) m", p.x(), p.y(), p.z());
+  return text;
+}
+
+std::string edge_place(const SurfaceMesh& surface, int a, int b) {
+  return "the edge from " + place(surface.points.row(a)) + " to " + place(surface.points.row(b));
+}
+
+// Every directed edge once, its opposite once.
+void check_edges(const SurfaceMesh& surface) {
+  std::unordered_map<std::uint64_t, int> uses;
+  uses.reserve(static_cast<std::size_t>(3 * surface.triangles.rows()));
+  const auto key = [](int a, int b) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32 |
+           static_cast<std::uint32_t>(b);
+  };
+  const auto each_edge = [&](auto visit) {
+    for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
+      for (int k = 0; k < 3; ++k)
+        visit(t, surface.triangles(t, k), surface.triangles(t, (k + 1) % 3));
+  };
+  each_edge([&](Eigen::Index t, int a, int b) {
+    if (a == b)
+      throw MeshError("triangle " + std::to_string(t) + " uses the point " +
+                      place(surface.points.row(a)) + " twice");
+    ++uses[key(a, b)];
+  });
+  std::size_t open = 0;
+  std::string where;
+  each_edge([&](Eigen::Index, int a, int b) {
+    const int same = uses[key(a, b)];
+    const auto opposite = uses.find(key(b, a));
+    const int back = opposite == uses.end() ? 0 : opposite->second;
+    if (same == 1 && back == 1) return;
+    if (same + back > 2)
+      throw MeshError("the surface is not a solid's boundary: " + std::to_string(same + back) +
+                      " triangles meet at " + edge_place(surface, a, b));
+    if (same == 2)
+      throw MeshError("two neighbouring triangles are oriented against each other at " +
+                      edge_place(surface, a, b));
+    if (open++ == 0) where = edge_place(surface, a, b);
+  });
+  if (open > 0)
+    throw MeshError("the surface is open: " + std::to_string(open) +
+                    " edges belong to one triangle only, the first is " + where);
+}
+
+}  // namespace
+
+SurfaceReport check_surface(const SurfaceMesh& surface) {
+  check_arrays(surface);
+  const Eigen::Index count = surface.triangles.rows();
+  if (count == 0) throw MeshError("the surface is empty");
+  if (count > static_cast<Eigen::Index>(kMaxTriangles))
+    throw MeshError("the surface has " + std::to_string(count) + " triangles; the limit is " +
+                    std::to_string(kMaxTriangles));
+  const double size = extent(surface.points);
+  if (!(size <= kLargestExtent && size >= kSmallestExtent))
+    throw MeshError("the surface is " + std::to_string(size) +
+                    " m large, outside 1e-7 m to 1e4 m: check the scale (1e-3 for millimetres)");
+  check_edges(surface);
+
+  SurfaceReport report{};
+  report.volume = enclosed_volume(surface);
+  report.shortest_edge = report.smallest_height = std::numeric_limits<double>::infinity();
+  for (Eigen::Index t = 0; t < count; ++t) {
+    const double area = triangle_area(surface, t);
+    double longest = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double edge = (corner(surface, t, (k + 1) % 3) - corner(surface, t, k)).norm();
+      report.shortest_edge = std::min(report.shortest_edge, edge);
+      longest = std::max(longest, edge);
+    }
+    const double height = longest > 0.0 ? 2.0 * area / longest : 0.0;
+    report.smallest_height = std::min(report.smallest_height, height);
+    report.degenerate_triangles += height < kDegenerateHeight * size;
+    report.area += area;
+  }
+  if (report.volume < 0.0)
+    throw MeshError("the surface is inside-out: it encloses " + std::to_string(report.volume) +
+                    " m³; swap two corners of every triangle");
+  if (report.volume <= 1e-9 * report.area * size) throw MeshError("the surface encloses no volume");
+  return report;
+}
+
+}  // namespace codesign::fem
