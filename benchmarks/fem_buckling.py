@@ -17,9 +17,9 @@ from pathlib import Path
 
 import codesign
 from codesign import _core, fem
-from codesign.analysis import StressSettings, part_case
-from codesign.geometry.part import Part
-from codesign.pipeline import stress_settings
+from codesign.chain.chain import stress_settings
+from codesign.parts.load_case import StressSettings, part_case
+from codesign.parts.part import Part
 
 DESIGNS = (
     {"angle": 15, "distance": 42, "offset": 80, "length": 108},

@@ -12,9 +12,9 @@ from typing import Any
 
 import codesign
 from codesign import _core, fem
-from codesign.analysis import StressSettings, confirm, part_case, part_document
-from codesign.geometry.part import Part
-from codesign.pipeline import stress_settings
+from codesign.chain.chain import stress_settings
+from codesign.parts.load_case import StressSettings, confirm, part_case, part_document
+from codesign.parts.part import Part
 
 DESIGNS = (
     {"angle": 15, "distance": 42, "offset": 80, "length": 108},

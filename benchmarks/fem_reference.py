@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import codesign
 from codesign import _core
-from codesign.analysis import part_case
-from codesign.pipeline import build_parts, stress_settings
+from codesign.chain.chain import build_parts, stress_settings
+from codesign.parts.load_case import part_case
 
 BRACKET, FOREARM = "jetpack_bracket", "forearm_support"
 # Part, design -> quantity: value (MPa, MPa, mm, N mm); displacement and work of the bracket hold for the full part.

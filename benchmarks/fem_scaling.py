@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 import codesign
 from codesign import _core, fem
-from codesign.pipeline import stress_settings
+from codesign.chain.chain import stress_settings
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
 FIGURE = Path(__file__).parents[1] / "docs" / "figures" / "fem_scaling.png"

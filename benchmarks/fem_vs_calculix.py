@@ -27,10 +27,10 @@ from scipy.spatial import cKDTree
 
 import codesign
 from codesign import _core, fem
+from codesign.chain.chain import stress_settings
 from codesign.geometry.brep import build_brep
 from codesign.geometry.shape import Shape
-from codesign.geometry.step import write_step
-from codesign.pipeline import stress_settings
+from codesign.parts.step import write_step
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 

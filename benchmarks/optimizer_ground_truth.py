@@ -19,11 +19,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from standin import PROBLEMS, standin
 
-from codesign.derived import coarse
-from codesign.front import Hypervolume, non_dominated, objective_rows
-from codesign.optimization import load_problem, optimize, resume, sweep
-from codesign.progress import ProgressBar
-from codesign.store import DATABASE
+from codesign.followup.derived import coarse
+from codesign.problem.pareto import Hypervolume, non_dominated, objective_rows
+from codesign.search.optimization import load_problem, optimize, resume, sweep
+from codesign.search.progress import ProgressBar
+from codesign.storage.store import DATABASE
 
 
 def main() -> None:

@@ -18,11 +18,11 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 from standin import PROBLEMS, standin
 
-from codesign.front import Hypervolume, objective_rows
-from codesign.optimization import load_problem, optimize, resume
-from codesign.problem import Problem
-from codesign.runs import Run
-from codesign.store import DATABASE
+from codesign.problem.pareto import Hypervolume, objective_rows
+from codesign.problem.protocols import Problem
+from codesign.search.optimization import load_problem, optimize, resume
+from codesign.storage.runs import Run
+from codesign.storage.store import DATABASE
 
 
 def main() -> None:

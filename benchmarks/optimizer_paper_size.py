@@ -12,10 +12,10 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from codesign.front import objective_rows
-from codesign.optimization import load_problem, optimize
-from codesign.progress import ProgressBar, duration
-from codesign.runs import Run
+from codesign.problem.pareto import objective_rows
+from codesign.search.optimization import load_problem, optimize
+from codesign.search.progress import ProgressBar, duration
+from codesign.storage.runs import Run
 
 PAPER_SECONDS = 216.0  # a design, "From CAD to URDF: Co-Design of a Jet-Powered Humanoid Robot …", 2024
 

@@ -21,22 +21,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codesign import dynamics as dyn
-from codesign.cache import MemoryCache
-from codesign.evaluation import Evaluation
-from codesign.flight_setup import flight_settings, joint_names
-from codesign.optimization import optimize
-from codesign.pipeline import objective_families
-from codesign.progress import ProgressBar
+from codesign.chain.chain import objective_families
+from codesign.chain.flight import flight_settings, joint_names
+from codesign.followup.validation import validate
+from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import load_details
 from codesign.report.figures import FigureData, style, write_figures
 from codesign.report.reading import read_report_data
 from codesign.report.validation import Validation, load_validation
 from codesign.report.writing import compute_details
-from codesign.runs import Run, load_run
-from codesign.store import DATABASE
+from codesign.search.optimization import optimize
+from codesign.search.progress import ProgressBar
+from codesign.storage.cache import MemoryCache
+from codesign.storage.runs import Run, load_run
+from codesign.storage.store import DATABASE
 from codesign.study import Study, load_study
-from codesign.validation import validate
 
 PAPER_SECONDS = 216.0  # a design, as the paper states
 PAPER_YIELD, STATED_YIELD = 524.0, 462.0  # MPa: in the published safety factors, in the paper's text

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from codesign.geometry.part import EXPORT_RESOLUTION, Part
+from codesign.parts.part import EXPORT_RESOLUTION, Part
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 

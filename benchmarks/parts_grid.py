@@ -12,8 +12,8 @@ from itertools import product
 
 import numpy as np
 
-from codesign.geometry.part import Part
-from codesign.geometry.surface import SurfaceMesh
+from codesign.parts.part import Part
+from codesign.parts.surface import SurfaceMesh
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 

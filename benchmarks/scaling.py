@@ -23,9 +23,9 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent))
 from standin import StandIn, standin
 
-from codesign.loop import Schedule
-from codesign.optimization import optimize
-from codesign.search import RandomSearch
+from codesign.search.base import RandomSearch
+from codesign.search.driver import Schedule
+from codesign.search.optimization import optimize
 
 SPREAD = 0.3  # standard deviation of the evaluation time over its mean
 

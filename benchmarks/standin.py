@@ -14,8 +14,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from codesign.design import DesignSpace, Variable
-from codesign.evaluation import Evaluation
+from codesign.problem.design_space import DesignSpace, Variable
+from codesign.problem.evaluation import Evaluation
 
 Values = tuple[tuple[float, float, float], float]  # objectives, constraint violation
 

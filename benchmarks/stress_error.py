@@ -13,9 +13,9 @@ from dataclasses import replace
 
 import codesign
 from codesign import _core, fem
-from codesign.analysis import StressSettings
-from codesign.geometry.part import Part
-from codesign.pipeline import stress_settings
+from codesign.chain.chain import stress_settings
+from codesign.parts.load_case import StressSettings
+from codesign.parts.part import Part
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 

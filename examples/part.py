@@ -7,9 +7,9 @@ import sys
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 
-from codesign.geometry.part import Part, parameter
 from codesign.geometry.profile import Path as Outline
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, stepped_hole
+from codesign.parts.part import Part, parameter
 
 
 @dataclass(frozen=True)

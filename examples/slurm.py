@@ -15,8 +15,8 @@ import argparse
 import sys
 from typing import Any
 
-from codesign.optimization import optimize
-from codesign.progress import ProgressBar
+from codesign.search.optimization import optimize
+from codesign.search.progress import ProgressBar
 
 
 def slurm_cluster(given: argparse.Namespace) -> Any:

@@ -8,15 +8,15 @@
 
 #include "bindings/bindings.hpp"
 #include "errors.hpp"
-#include "fem/surface/mass_properties.hpp"
 #include "fem/mesh/mesh_quality.hpp"
+#include "fem/mesh/tet_topology.hpp"
 #include "fem/meshing/size_field.hpp"
+#include "fem/meshing/tet_mesher.hpp"
+#include "fem/smoothing/surface_smooth.hpp"
+#include "fem/surface/mass_properties.hpp"
 #include "fem/surface/stl.hpp"
 #include "fem/surface/surface_check.hpp"
 #include "fem/surface/surface_features.hpp"
-#include "fem/smoothing/surface_smooth.hpp"
-#include "fem/meshing/tet_mesher.hpp"
-#include "fem/mesh/tet_topology.hpp"
 
 namespace py = pybind11;
 using py::literals::operator""_a;

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "fem/meshing/size_field.hpp"
 #include "fem/elasticity/static_solver.hpp"
-#include "fem/surface/surface_mesh.hpp"
 #include "fem/mesh/tet_mesh.hpp"
+#include "fem/meshing/size_field.hpp"
 #include "fem/meshing/tet_mesher.hpp"
+#include "fem/surface/surface_mesh.hpp"
 
 namespace codesign::fem {
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from codesign.evaluation import Evaluation
-    from codesign.optimization import optimize, resume
+    from codesign.problem.evaluation import Evaluation
+    from codesign.search.optimization import optimize, resume
     from codesign.study import Study, load_study
 
 __version__ = "0.1.0"
@@ -15,11 +15,11 @@ __all__ = ["Evaluation", "Study", "evaluate", "load_study", "optimize", "resume"
 
 # Imported when first used: a worker process needs no optimiser, a look at the version needs nothing.
 _HOMES = {
-    "Evaluation": "codesign.evaluation",
+    "Evaluation": "codesign.problem.evaluation",
     "Study": "codesign.study",
     "load_study": "codesign.study",
-    "optimize": "codesign.optimization",
-    "resume": "codesign.optimization",
+    "optimize": "codesign.search.optimization",
+    "resume": "codesign.search.optimization",
 }
 
 

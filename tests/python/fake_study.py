@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from codesign.design import DesignSpace, Variable
-from codesign.evaluation import Evaluation
+from codesign.problem.design_space import DesignSpace, Variable
+from codesign.problem.evaluation import Evaluation
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from codesign.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation
 from codesign.report.details import Detail, FlightHistory, StressField
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from codesign.design import DesignSpace, Variable
-from codesign.evaluation import Evaluation
-from codesign.execute import StudyRef
-from codesign.store import Record, RunStore
+from codesign.execution.pool import StudyRef
+from codesign.problem.design_space import DesignSpace, Variable
+from codesign.problem.evaluation import Evaluation
+from codesign.storage.store import Record, RunStore
 from codesign.study import load_study
 
 SPACE = DesignSpace(

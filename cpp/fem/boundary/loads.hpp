@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "fem/mesh/material.hpp"
 #include "fem/boundary/selection.hpp"
+#include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "fem/la/block_krylov.hpp"
 #include "fem/boundary/rigid_motions.hpp"
 #include "fem/elasticity/stiffness.hpp"
-#include "fem/stress/stress.hpp"
+#include "fem/la/block_krylov.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "fem/stress/stress.hpp"
 
 namespace codesign::fem {
 

@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
-#include "fem/la/cholesky.hpp"
-#include "fem/mesh/material.hpp"
-#include "fem/la/ordering.hpp"
 #include "fem/boundary/supports.hpp"
+#include "fem/la/cholesky.hpp"
+#include "fem/la/ordering.hpp"
+#include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {

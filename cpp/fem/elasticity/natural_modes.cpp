@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/la/block_krylov.hpp"
 #include "fem/boundary/rigid_motions.hpp"
+#include "fem/la/block_krylov.hpp"
 
 namespace codesign::fem {
 

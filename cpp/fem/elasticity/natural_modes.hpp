@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fem/la/cholesky.hpp"
-#include "fem/mesh/material.hpp"
-#include "fem/la/ordering.hpp"
-#include "fem/elasticity/stiffness.hpp"
 #include "fem/boundary/supports.hpp"
+#include "fem/elasticity/stiffness.hpp"
+#include "fem/la/cholesky.hpp"
+#include "fem/la/ordering.hpp"
+#include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {

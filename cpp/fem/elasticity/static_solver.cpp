@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "errors.hpp"
-#include "fem/la/cholesky.hpp"
-#include "fem/la/ordering.hpp"
-#include "fem/stress/recovery.hpp"
 #include "fem/boundary/rigid_motions.hpp"
 #include "fem/elasticity/stiffness.hpp"
+#include "fem/la/cholesky.hpp"
+#include "fem/la/ordering.hpp"
 #include "fem/la/two_level.hpp"
+#include "fem/stress/recovery.hpp"
 
 namespace codesign::fem {
 

@@ -4,14 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "fem/elasticity/buckling.hpp"
 #include "fem/boundary/loads.hpp"
-#include "fem/mesh/material.hpp"
+#include "fem/boundary/supports.hpp"
+#include "fem/elasticity/buckling.hpp"
 #include "fem/elasticity/natural_modes.hpp"
+#include "fem/mesh/material.hpp"
+#include "fem/mesh/tet_mesh.hpp"
 #include "fem/stress/peak_stress.hpp"
 #include "fem/stress/stress.hpp"
-#include "fem/boundary/supports.hpp"
-#include "fem/mesh/tet_mesh.hpp"
 
 // Linear elasticity of one part: find u with
 //

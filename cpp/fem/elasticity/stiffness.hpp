@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fem/mesh/material.hpp"
 #include "fem/la/lower_matrix.hpp"
 #include "fem/la/ordering.hpp"
+#include "fem/mesh/material.hpp"
 #include "fem/mesh/tet10.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "fem/la/ordering.hpp"
 #include "fem/la/lower_matrix.hpp"
+#include "fem/la/ordering.hpp"
 
 namespace codesign::fem {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fem/la/supernodes.hpp"
 #include "fem/boundary/supports.hpp"
+#include "fem/la/supernodes.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {

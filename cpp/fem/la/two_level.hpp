@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "fem/la/cholesky.hpp"
-#include "fem/la/ordering.hpp"
 #include "fem/la/lower_matrix.hpp"
+#include "fem/la/ordering.hpp"
 
 namespace codesign::fem {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "fem/surface/edge_key.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "fem/surface/edge_key.hpp"
 
 namespace codesign::fem {
 

@@ -9,10 +9,10 @@
 #include <unordered_map>
 #include <utility>
 
-#include "fem/surface/edge_key.hpp"
-#include "fem/meshing/feature_curve.hpp"
 #include "fem/mesh/tet10.hpp"
 #include "fem/mesh/tet_neighbours.hpp"
+#include "fem/meshing/feature_curve.hpp"
+#include "fem/surface/edge_key.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "fem/mesh/tet_mesh.hpp"
 #include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/surface_features.hpp"
 #include "fem/surface/surface_mesh.hpp"
-#include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {
 

@@ -21,9 +21,9 @@
 #include <utility>
 
 #include "errors.hpp"
+#include "fem/mesh/tet_neighbours.hpp"
 #include "fem/meshing/feature_curve.hpp"
 #include "fem/surface/solid_oracle.hpp"
-#include "fem/mesh/tet_neighbours.hpp"
 
 namespace codesign::fem {
 namespace {

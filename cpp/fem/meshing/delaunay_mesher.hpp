@@ -1,10 +1,10 @@
 #pragma once
 
 #include "fem/meshing/linear_tets.hpp"
+#include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/size_field.hpp"
 #include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/surface_features.hpp"
-#include "fem/meshing/mesh_options.hpp"
 
 namespace codesign::fem {
 

@@ -6,10 +6,10 @@
 #include <unordered_map>
 #include <utility>
 
-#include "fem/surface/edge_key.hpp"
 #include "fem/mesh/mesh_quality.hpp"
 #include "fem/mesh/tet10.hpp"
 #include "fem/mesh/tet_topology.hpp"
+#include "fem/surface/edge_key.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -8,15 +8,15 @@
 #include <string>
 
 #include "errors.hpp"
+#include "fem/mesh/mesh_quality.hpp"
 #include "fem/meshing/curved_edges.hpp"
 #include "fem/meshing/delaunay_mesher.hpp"
 #include "fem/meshing/linear_tets.hpp"
-#include "fem/mesh/mesh_quality.hpp"
+#include "fem/meshing/tet_improve.hpp"
 #include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/surface_check.hpp"
 #include "fem/surface/surface_features.hpp"
 #include "fem/surface/surface_simplify.hpp"
-#include "fem/meshing/tet_improve.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "fem/mesh/tet_mesh.hpp"
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/size_field.hpp"
 #include "fem/surface/surface_mesh.hpp"
-#include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {
 

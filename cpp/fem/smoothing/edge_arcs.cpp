@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "fem/surface/edge_key.hpp"
 #include "fem/mesh/tet_neighbours.hpp"
+#include "fem/surface/edge_key.hpp"
 
 namespace codesign::fem {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/stress/surface_distance.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "fem/stress/surface_distance.hpp"
 
 namespace codesign::fem {
 

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fem/mesh/tet_mesh.hpp"
 #include "fem/stress/recovery.hpp"
 #include "fem/stress/stress.hpp"
-#include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 
 #include "fem/mesh/material.hpp"
-#include "fem/stress/stress.hpp"
 #include "fem/mesh/tet_mesh.hpp"
+#include "fem/stress/stress.hpp"
 
 namespace codesign::fem {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "fem/stress/surface_distance.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "fem/stress/surface_distance.hpp"
 
 namespace codesign::fem {
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from codesign import fem
-from codesign.flight_setup import joint_names
-from codesign.pipeline import evaluate_with_fields
+from codesign.chain.chain import evaluate_with_fields
+from codesign.chain.flight import joint_names
 from codesign.report.details import Detail, FlightHistory, StressField, flight_history
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from codesign.design import DesignSpace, Variable
-from codesign.evaluation import Evaluation
-from codesign.front import non_dominated
+from codesign.problem.design_space import DesignSpace, Variable
+from codesign.problem.evaluation import Evaluation
+from codesign.problem.pareto import non_dominated
 from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee
 from codesign.units import MILLIMETRE
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from codesign.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation
 
 FOLDER = "details"
 SAMPLES = 1051  # kept of a flight history: 40 ms steps of 42 s

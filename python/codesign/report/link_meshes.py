@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from codesign.errors import UrdfError
+from codesign.robot.description import RobotDescription
+from codesign.robot.package import resolve_mesh
 from codesign.transforms import Matrix
-from codesign.urdf import RobotDescription
-from codesign.urdf_package import resolve_mesh
 
 # Where packages are looked for: variable -> folder below each of its entries that holds packages.
 SEARCH_PATHS = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from codesign.front import Hypervolume
+from codesign.problem.pareto import Hypervolume
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from codesign.errors import CodesignError
-from codesign.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation
 from codesign.report.data import Entry, ReportData, objective_quantities, words
 from codesign.report.details import load_details
-from codesign.runs import Run, load_run
+from codesign.storage.runs import Run, load_run
 from codesign.units import MILLIMETRE
 
 logger = logging.getLogger(__name__)

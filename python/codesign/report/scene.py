@@ -14,8 +14,8 @@ import yourdfpy
 from numpy.typing import NDArray
 
 from codesign.report.link_meshes import LinkMesh, link_meshes, package_paths
+from codesign.robot.description import RobotDescription
 from codesign.transforms import Matrix
-from codesign.urdf import RobotDescription
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from codesign.errors import CodesignError, StoreError
-from codesign.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
 from codesign.report.figures import FigureData, drawing

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from codesign.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import Detail, detail_key
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from codesign.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.figures import style
 from codesign.report.figures.data import FigureData

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from codesign.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation
 from codesign.report.data import Quantity, ReportData, constraint_quantity, words
 from codesign.report.details import detail_key
 from codesign.units import DEGREE

@@ -9,9 +9,9 @@ from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
-from codesign.geometry.part import Part, parameter
 from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, cylinder
+from codesign.parts.part import Part, parameter
 from codesign.units import MILLIMETRE
 
 PLATE, WIDTH, SEAT_RADIUS = 12.0, 24.0, 24.0

@@ -11,11 +11,11 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 
 from codesign import _core, fem
-from codesign.analysis import StressSettings, clamp, native_case
 from codesign.errors import GeometryError
-from codesign.geometry.part import Part, parameter
 from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, box, cylinder, polar, stepped_hole, union
+from codesign.parts.load_case import StressSettings, clamp, native_case
+from codesign.parts.part import Part, parameter
 from codesign.units import MILLIMETRE
 
 BASE = 15.0  # thickness of the base; the slab's is a field, see `thickness`

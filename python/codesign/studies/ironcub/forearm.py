@@ -12,9 +12,7 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 
 from codesign import _core, fem
-from codesign.analysis import StressSettings, clamp, native_case
 from codesign.errors import GeometryError
-from codesign.geometry.part import Part, parameter
 from codesign.geometry.profile import Path, Profile, Vector, circle
 from codesign.geometry.shape import (
     Extrusion,
@@ -29,6 +27,8 @@ from codesign.geometry.shape import (
     stepped_hole,
     union,
 )
+from codesign.parts.load_case import StressSettings, clamp, native_case
+from codesign.parts.part import Part, parameter
 from codesign.units import MILLIMETRE
 
 AXIS: Triple = (0.0, 15.0, 0.0)  # a point of the rod's axis

@@ -1,0 +1,1 @@
+"""The engine: from design variables to objectives and constraints."""

@@ -1,0 +1,176 @@
+"""From a study's [flight] and [trajectories] sections to the native FlightSettings: names and units, no physics."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from codesign import dynamics as dyn
+from codesign.errors import StudyError
+from codesign.study.config import DisturbancesConfig, FlightConfig, StudyConfig, TrajectoryConfig
+from codesign.transforms import pose
+from codesign.units import DEGREE
+
+TURBINE_COEFFICIENTS = ("K_T", "K_TT", "K_D", "K_DD", "K_TD", "B_U", "B_T", "B_D", "B_UU", "c")
+
+
+def joint_names(flight: FlightConfig) -> list[str]:
+    """Actuated joints in the order of all joint vectors: group by group."""
+    return [joint for group in flight.joint_groups for joint in group.joints]
+
+
+def find_trajectory(config: StudyConfig, name: str) -> TrajectoryConfig:
+    """A trajectory of the study; `name@seed`: with its disturbances drawn from another seed.
+
+    Raises: StudyError if there is none of that name, or the seed is not a whole number.
+    """
+    base, at, seed = name.partition("@")
+    if base not in config.trajectories:
+        raise StudyError(f"no trajectory {base!r}; this study has {', '.join(config.trajectories)}")
+    trajectory = config.trajectories[base]
+    if not at:
+        return trajectory
+    if not seed.isdecimal():
+        raise StudyError(f"trajectory {name!r}: the seed after @ must be a whole number")
+    disturbances = msgspec.structs.replace(trajectory.disturbances, seed=int(seed))
+    return msgspec.structs.replace(trajectory, disturbances=disturbances)
+
+
+def flight_settings(
+    flight: FlightConfig, trajectory: TrajectoryConfig, jet_model: str | None = None
+) -> dyn.FlightSettings:
+    """Native settings of one flight on one trajectory, SI units; `jet_model`: instead of the study's.
+
+    Raises: StudyError if there is no such jet model.
+    """
+    settings = dyn.FlightSettings()
+    settings.step = flight.step_s
+    settings.duration = flight.duration_s
+    settings.joints = joint_names(flight)
+    settings.jets = flight.jets.frames
+    _set_jet_model(settings, flight, jet_model or flight.jet_model)
+    _set_initial_state(settings, flight)
+    _set_references(settings, flight)
+    _set_controller(settings, flight)
+    settings.trajectory = [
+        dyn.CommandWindow(
+            start=w.from_s, end=w.to_s, front=w.forward, left=w.left, up=w.up, roll=w.roll, pitch=w.pitch, yaw=w.yaw
+        )
+        for w in trajectory.windows
+    ]
+    settings.disturbances = _disturbances(trajectory.disturbances)
+    settings.contact_points = [
+        dyn.ContactPoint(frame=frame, position=np.array(point))
+        for frame in flight.ground.frames
+        for point in flight.ground.points_m
+    ]
+    settings.ground_height = flight.ground.height_m
+    settings.failure = dyn.FailureLimits(
+        com_error=flight.failure.com_error_m,
+        attitude_error=flight.failure.attitude_error_deg * DEGREE,
+        joint_speed=flight.failure.joint_speed_rad_s,
+    )
+    return settings
+
+
+def _disturbances(disturbances: DisturbancesConfig) -> dyn.Disturbances:
+    return dyn.Disturbances(
+        wind_force=np.array(disturbances.wind_n),
+        gust_deviation=np.array(disturbances.gust_deviation_n),
+        gust_time=disturbances.gust_time_s,
+        mass_scale=disturbances.mass_scale,
+        mass_deviation=disturbances.mass_deviation,
+        thrust_deviation=disturbances.thrust_deviation,
+        seed=disturbances.seed,
+    )
+
+
+def _per_joint(flight: FlightConfig, attribute: str) -> np.ndarray:
+    return np.array([getattr(group, attribute) for group in flight.joint_groups for _ in group.joints], dtype=float)
+
+
+def _set_initial_state(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
+    initial = flight.initial_state
+    settings.base_pose = pose(initial.base_position_m, [angle * DEGREE for angle in initial.base_rpy_deg])
+    settings.initial_joints = np.concatenate([group.initial_rad for group in flight.joint_groups])
+    settings.initial_thrusts = np.full(len(flight.jets.frames), initial.thrust_n)
+    settings.initial_free_fall = initial.free_fall_first_step
+
+
+def _set_jet_model(settings: dyn.FlightSettings, flight: FlightConfig, name: str) -> None:
+    if name not in dyn.JetModel.__members__:
+        raise StudyError(f"no jet model {name!r}; there are {', '.join(dyn.JetModel.__members__)}")
+    settings.jet_model = dyn.JetModel.__members__[name]
+    if name == "turbine":
+        if flight.turbine is None:
+            raise StudyError("jet model 'turbine' needs the section [flight.turbine]")
+        coefficients = {key: getattr(flight.turbine, key) for key in TURBINE_COEFFICIENTS}
+        turbine = dyn.Turbine(**coefficients, throttle_max=flight.turbine.max_throttle_percent)
+        settings.turbines = [turbine] * len(flight.jets.frames)
+
+
+def _set_references(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
+    speeds, references = flight.command_speeds, flight.references
+    settings.command_speeds = dyn.CommandSpeeds(
+        front=speeds.forward_m_s,
+        left=speeds.lateral_m_s,
+        up=speeds.vertical_m_s,
+        roll=speeds.roll_deg_s * DEGREE,
+        pitch=speeds.pitch_deg_s * DEGREE,
+        yaw=speeds.yaw_deg_s * DEGREE,
+    )
+    settings.reference = dyn.ReferenceSettings(
+        roll_min=references.roll_range_deg[0] * DEGREE,
+        roll_max=references.roll_range_deg[1] * DEGREE,
+        pitch_min=references.pitch_range_deg[0] * DEGREE,
+        pitch_max=references.pitch_range_deg[1] * DEGREE,
+        com_time=references.position_smoothing_s,
+        jerk_time=references.jerk_smoothing_s,
+        rotation_gain=references.rotation_gain_hz,
+        angular_velocity_time=references.angular_velocity_smoothing_s,
+    )
+
+
+def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
+    gains, weights, limits = flight.gains, flight.weights, flight.limits
+    settings.gains = dyn.Gains(
+        momentum_proportional=gains.linear_proportional,
+        momentum_derivative=gains.linear_derivative,
+        momentum_integral=gains.linear_momentum,
+        attitude_proportional=gains.attitude_proportional,
+        attitude_derivative=gains.attitude_derivative,
+        posture=_per_joint(flight, "posture_gain_hz"),
+        torque_proportional=gains.joint_proportional,
+        torque_integral=gains.joint_integral,
+        turbine_rate=flight.turbine.throttle_gain if flight.turbine else 50.0,
+    )
+    settings.weights = dyn.Weights(
+        momentum=weights.momentum,
+        constant_inertia=weights.constant_inertia,
+        posture=weights.posture,
+        joint_velocity=weights.joint_velocity,
+        thrust_rate=weights.thrust_rate,
+        thrust_symmetry=weights.thrust_symmetry,
+        regularisation=weights.regularization,
+        torque=weights.torque,
+    )
+    ranges = np.array([r for group in flight.joint_groups for r in group.ranges_deg]) * DEGREE
+    settings.limits = dyn.Limits(
+        joint_lower=ranges[:, 0],
+        joint_upper=ranges[:, 1],
+        joint_range_scale=_per_joint(flight, "range_scale"),
+        joint_speed=limits.joint_speed_deg_s * DEGREE,
+        joint_slope=limits.joint_speed_slope_per_rad,
+        thrust_max=flight.jets.max_thrust_n,
+        thrust_rate=flight.jets.max_thrust_rate_n_s,
+        thrust_slope=limits.thrust_rate_slope_per_n,
+        torque=limits.torque_n_m,
+        torque_rate=limits.torque_rate_n_m_s,
+    )
+    jets = flight.jets.frames
+    settings.symmetry_pairs = [(jets.index(a), jets.index(b)) for a, b in flight.jets.symmetric_pairs]
+    settings.groups = [
+        dyn.JointGroup(name=group.name, joints=group.joints, weight=group.velocity_weight)
+        for group in flight.joint_groups
+        if group.velocity_weight > 0
+    ]

@@ -1,0 +1,115 @@
+"""Results as text on a terminal, or as JSON on stdout."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from codesign.parts.load_case import Confirmation
+    from codesign.problem.evaluation import Evaluation
+    from codesign.storage.runs import Run
+
+out = Console()
+err = Console(stderr=True)
+
+
+def print_json(document: Any) -> None:
+    """One JSON document on stdout, nothing else."""
+    sys.stdout.write(json.dumps(document, indent=1, allow_nan=False) + "\n")
+
+
+def print_evaluation(evaluation: Evaluation) -> None:
+    """Text summary of one evaluation."""
+    colour = {"feasible": "green", "infeasible": "yellow", "failed": "red"}[evaluation.status]
+    out.print(f"[bold {colour}]{evaluation.status}[/]  " + "  ".join(f"{k}={v}" for k, v in evaluation.design.items()))
+    if evaluation.reason:
+        out.print(evaluation.reason)
+    table = Table(show_header=False, box=None, pad_edge=False)
+    for group in (evaluation.objectives, evaluation.constraints):
+        for key, value in group.items():
+            table.add_row(key, f"{value:.5g}")
+    for name, part in evaluation.parts.items():
+        table.add_row(
+            name,
+            f"{part['mass']:.4f} kg, SF {part['safety_factor']:.1f}, peak {part['peak_stress'] / 1e6:.2f} MPa"
+            f" (± {part['stress_error'] / 1e6:.2f})",
+        )
+    for key in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust"):
+        if key in evaluation.flight:
+            table.add_row(f"flight {key}", f"{evaluation.flight[key]:.4g}")
+    table.add_row("seconds", "  ".join(f"{k} {v:.2f}" for k, v in evaluation.seconds.items()))
+    out.print(table)
+
+
+def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
+    """Analysed and confirmed numbers of each part side by side."""
+    for name, confirmation in confirmations.items():
+        table = Table("", "as analysed", "full, fine mesh", title=name, title_justify="left", box=None, pad_edge=False)
+        both = (confirmation.analysed, confirmation.confirmed)
+        table.add_row("safety factor", *(f"{part['safety_factor']:.2f}" for part in both))
+        stresses = (f"{part['peak_stress'] / 1e6:.2f} ± {part['stress_error'] / 1e6:.2f}" for part in both)
+        table.add_row("peak stress [MPa]", *stresses)
+        table.add_row("stress in 50 mm³ [MPa]", *(f"{part['stress_50'] / 1e6:.2f}" for part in both))
+        table.add_row("largest displacement [mm]", *(f"{part['max_displacement'] * 1e3:.4f}" for part in both))
+        table.add_row("tolerance reached", *("yes" if part["tolerance_reached"] else "no" for part in both))
+        table.add_row("seconds", *(f"{sum(part['seconds'].values()):.1f}" for part in both))
+        out.print(table)
+
+
+def print_run(run: Run, as_json: bool) -> int:
+    """Summary of a run and its front; exit code 1 if nothing is feasible."""
+    from codesign.storage.runs import summarize
+
+    summary = summarize(run)
+    front = [record.evaluation for record in run.front]
+    if as_json:
+        print_json(summary | {"front": [evaluation.to_dict() for evaluation in front]})
+    else:
+        counts = "  ".join(f"{status} {count}" for status, count in summary["statuses"].items())
+        out.print(f"[bold]{run.out}[/]: {summary['designs']} designs ({counts}) in {summary['seconds']:.1f} s")
+        table = Table(title=f"Pareto front, {len(front)} designs", title_justify="left")
+        rows = sorted(front, key=lambda evaluation: list(evaluation.objectives.values()))
+        for evaluation in rows[:20]:
+            if not table.columns:
+                for name in (*evaluation.design, *evaluation.objectives, "safety_factor"):
+                    table.add_column(name, justify="right")
+            values = [*evaluation.design.values(), *evaluation.objectives.values()]
+            table.add_row(*(f"{value:.5g}" for value in (*values, evaluation.constraints.get("safety_factor", 0.0))))
+        out.print(table)
+        if len(rows) > 20:
+            out.print(f"… and {len(rows) - 20} more")
+    return 0 if front else 1
+
+
+def print_stress(document: dict[str, Any]) -> None:
+    """Text summary of `codesign stress`."""
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_row("safety factor", f"{document['safety_factor']:.3g} ({document['material']})")
+    table.add_row(
+        "peak stress", f"{document['peak_stress'] / 1e6:.4g} ± {document['stress_error'] / 1e6:.2g} MPa at "
+        + ", ".join(f"{1e3 * x:.2f}" for x in document["peak_position"]) + " mm",
+    )  # fmt: skip
+    table.add_row("stress exceeded in 50 mm³", f"{document['stress_50'] / 1e6:.4g} MPa")
+    table.add_row("largest displacement", f"{document['max_displacement'] * 1e3:.4g} mm")
+    if document["smoothing"] is not None:
+        table.add_row("facets curved back", _describe_facets(document["smoothing"]))
+    if document["facets_literal"] is not None:
+        table.add_row("facets that look round", _describe_facets(document["facets_literal"]) + " if --smooth")
+    table.add_row("elements", f"{document['tetrahedra']}, edge length {document['edge_length'] * 1e3:.3g} mm")
+    table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
+    out.print(table)
+
+
+def _describe_facets(facets: dict[str, Any]) -> str:
+    if facets["reason"]:
+        return f"none: {facets['reason']}"
+    left = f", {facets['left']} left lest they fold" if facets["left"] else ""
+    distance, volume = f"{1e3 * facets['max_distance']:.2g} mm", f"{facets['volume_change']:+.2%}"
+    return f"{facets['facets']} by up to {distance}, volume {volume}{left}"

@@ -1,0 +1,1 @@
+"""Processes: local workers with limits, clusters. Nothing of search."""

@@ -1,0 +1,143 @@
+"""STEP files (ISO 10303-21, mm): exact solids with named faces, alone or placed in an assembly.
+
+OpenCASCADE reports on C's stdout whatever it does; its printers are taken out while it works.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.gp import gp_Trsf
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_StepModelType
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopLoc import TopLoc_Location
+from OCP.XCAFApp import XCAFApp_Application
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+from codesign import __version__
+from codesign.errors import GeometryError
+from codesign.files import replacing
+from codesign.geometry.brep import Brep, build_brep, moved
+from codesign.geometry.profile import Vector
+from codesign.geometry.shape import reflection
+from codesign.parts.component import Component, distinct_parts
+from codesign.parts.part import MirroredPart, Part
+from codesign.units import MILLIMETRE
+
+SCHEMAS = {"AP214": "AP214IS", "AP242": "AP242DIS"}
+
+
+def part_breps(parts: Sequence[Part]) -> dict[Part, Brep]:
+    """Exact solids of parts; a mirrored part is the reflection of its original, which is built once."""
+    breps: dict[Part, Brep] = {}
+
+    def brep(part: Part) -> Brep:
+        if part not in breps:
+            if isinstance(part, MirroredPart):
+                breps[part] = moved(brep(part.original), reflection(part.axis))
+            else:
+                breps[part] = build_brep(part.shape())
+        return breps[part]
+
+    return {part: brep(part) for part in parts}
+
+
+def write_step(part: Part, path: str | os.PathLike[str], schema: str = "AP242", brep: Brep | None = None) -> None:
+    """One part as a solid with its name and the names of its faces. `brep`: its exact solid, if already built."""
+    document = _Document()
+    document.add_part(part.name, brep or part_breps([part])[part])
+    document.write(path, schema)
+
+
+def write_step_assembly(
+    components: Sequence[Component],
+    path: str | os.PathLike[str],
+    name: str = "assembly",
+    schema: str = "AP242",
+    breps: Mapping[Part, Brep] | None = None,
+) -> None:
+    """Placed parts as one assembly; components that share a part share its solid. `breps`: from `part_breps`."""
+    breps = breps or part_breps(distinct_parts(components))
+    document = _Document()
+    labels = {part: document.add_part(part.name, breps[part]) for part in distinct_parts(components)}
+    document.add_assembly(name, [(c.name, labels[c.part], c.pose) for c in components])
+    document.write(path, schema)
+
+
+class _Document:
+    """A STEP model under construction: products with names and sub-shapes."""
+
+    def __init__(self) -> None:
+        self._document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
+        XCAFApp_Application.GetApplication_s().InitDocument(self._document)
+        self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(self._document.Main())
+
+    def add_part(self, name: str, brep: Brep) -> TDF_Label:
+        """A product made of one solid."""
+        label = self._shapes.AddShape(brep.shape, False)
+        _set_name(label, name)
+        for face, face_name in brep.named_faces:
+            _set_name(self._shapes.AddSubShape(label, face), face_name)
+        return label
+
+    def add_assembly(self, name: str, components: Sequence[tuple[str, TDF_Label, Vector]]) -> None:
+        """A product made of placed products; poses in metres."""
+        assembly = self._shapes.NewShape()
+        _set_name(assembly, name)
+        for component_name, part, pose in components:
+            rows = pose[:3].copy()
+            rows[:, 3] /= MILLIMETRE
+            motion = gp_Trsf()
+            motion.SetValues(*rows.ravel().tolist())
+            _set_name(self._shapes.AddComponent(assembly, part, TopLoc_Location(motion)), component_name)
+        self._shapes.UpdateAssemblies()
+
+    def write(self, path: str | os.PathLike[str], schema: str) -> None:
+        """Writes the file whole or not at all."""
+        if schema not in SCHEMAS:
+            raise ValueError(f"schema = {schema!r}: must be one of {', '.join(SCHEMAS)}")
+        with _silent(), replacing(path) as temporary:
+            STEPCAFControl_Controller.Init_s()
+            Interface_Static.SetCVal_s("write.step.schema", SCHEMAS[schema])
+            Interface_Static.SetCVal_s("write.stepcaf.subshapes.name", "On")
+            Interface_Static.SetCVal_s("write.step.unit", "MM")
+            writer = STEPCAFControl_Writer()
+            writer.SetNameMode(True)
+            if not writer.Transfer(self._document, STEPControl_StepModelType.STEPControl_AsIs):
+                raise GeometryError(f"{path}: OpenCASCADE could not translate the shape to STEP")
+            header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+            header.SetName(TCollection_HAsciiString(Path(path).name))
+            header.SetOriginatingSystem(TCollection_HAsciiString(f"codesign {__version__}"))
+            header.SetAuthorValue(1, TCollection_HAsciiString(""))
+            header.SetOrganizationValue(1, TCollection_HAsciiString(""))
+            if writer.Write(os.fspath(temporary)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+                raise OSError(f"{path}: OpenCASCADE could not write the STEP file")
+
+
+def _set_name(label: TDF_Label, name: str) -> None:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """OpenCASCADE without its printers."""
+    messenger = Message.DefaultMessenger_s()
+    printers = list(messenger.Printers())
+    for printer in printers:
+        messenger.RemovePrinter(printer)
+    try:
+        yield
+    finally:
+        for printer in printers:
+            messenger.AddPrinter(printer)

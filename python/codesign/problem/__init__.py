@@ -1,0 +1,1 @@
+"""What search, store and chain agree on: design space, evaluations, ranking."""

@@ -1,0 +1,87 @@
+"""What the optimiser needs of a study: any object with these members can be optimised, wherever it comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from codesign.problem.design_space import DesignSpace
+from codesign.problem.evaluation import Evaluation
+from codesign.storage.cache import PartCache
+
+
+class OptimizerDefaults(Protocol):
+    """A study's [optimizer]."""
+
+    @property
+    def population(self) -> int:
+        """Designs of a generation."""
+
+    @property
+    def generations(self) -> int:
+        """Generations, the start population included."""
+
+    @property
+    def crossover_probability(self) -> float:
+        """That two parents are crossed."""
+
+    @property
+    def mutation_probability(self) -> float:
+        """Of each variable of a child."""
+
+
+class ExecutionDefaults(Protocol):
+    """A study's [execution]; a limit of 0 means none."""
+
+    @property
+    def workers(self) -> int:
+        """Worker processes."""
+
+    @property
+    def time_limit_s(self) -> float:
+        """Wall time of one evaluation [s]."""
+
+    @property
+    def memory_limit_mib(self) -> int:
+        """Memory of one evaluation [MiB], beyond what the loaded study takes."""
+
+
+class Problem(Protocol):
+    """A study as the optimiser sees it.
+
+    Worker processes load it again: by `codesign.study.load_study(source)`, or by another `module:function` named in an
+    attribute `loader`.
+    """
+
+    @property
+    def name(self) -> str:
+        """For people, and for the name of the cache file."""
+
+    @property
+    def source(self) -> str:
+        """What a worker process loads it from."""
+
+    @property
+    def hash(self) -> str:
+        """Of everything that decides a result."""
+
+    @property
+    def space(self) -> DesignSpace:
+        """The design grid."""
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Keys of Evaluation.objectives to minimise."""
+
+    @property
+    def optimizer(self) -> OptimizerDefaults:
+        """Defaults of a search."""
+
+    @property
+    def execution(self) -> ExecutionDefaults:
+        """Defaults of how evaluations run."""
+
+    def evaluate(
+        self, design: Mapping[str, float], /, trajectory: str | None = None, cache: PartCache | None = None
+    ) -> Evaluation:
+        """One design, on the study's own trajectory unless another is named."""

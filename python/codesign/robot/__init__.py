@@ -1,0 +1,1 @@
+"""The robot as data: URDF, packages, parts placed in links, clearances."""

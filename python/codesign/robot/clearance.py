@@ -1,0 +1,377 @@
+"""Clearance between bodies of a robot over the postures it takes, and between jet plumes and the robot.
+
+Every link is the set of its primitive shapes; a part is given as convex pieces of its own surface. Watched
+bodies (the parts, turbines) are measured against every other link they can meet; a plume is a truncated cone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Annotated, Any
+
+import manifold3d
+import msgspec
+import numpy as np
+import yourdfpy
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from codesign.dynamics import hull_distances
+from codesign.errors import MeshError, StudyError, UrdfError
+from codesign.robot.assembly import PartPlacement, place_points
+from codesign.robot.description import RobotDescription
+from codesign.transforms import Matrix, inverse
+from codesign.units import DEGREE, MILLIMETRE
+
+Indices = NDArray[np.intp]
+Pieces = Mapping[str, Sequence[Matrix]]  # link -> points (n, 3) of each convex piece, link axes [m]
+CYLINDER_SIDES = 32  # inscribed: up to 0.5 % of the radius inside the true cylinder or sphere
+
+
+class PlumeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Jet plume along +z of each jet frame: a truncated cone from the nozzle.
+
+    half_angle_deg: 11.8° is the visible edge of a free turbulent round jet (Cushman-Roisin, "Environmental Fluid
+    Mechanics", turbulent jets). start_mm: gap between frame origin and cone, which so does not touch the nozzle.
+    """
+
+    jets: tuple[str, ...] = ()
+    half_angle_deg: float = 11.8
+    radius_mm: float = 34.0
+    start_mm: float = 5.0
+    length_mm: float = 1000.0
+
+
+class InterferenceSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What is measured.
+
+    bodies: watched links. ignore: pairs of links that touch by design. report_below_mm: pairs that stay farther apart
+    in all postures are left out of the report. postures: how many of a flight, evenly in time, beside those where a
+    joint is at its ends. slices: convex pieces of each part.
+    """
+
+    bodies: tuple[str, ...]
+    ignore: tuple[tuple[str, str], ...] = ()
+    plumes: PlumeSettings = PlumeSettings()
+    report_below_mm: float = 50.0
+    postures: Annotated[int, msgspec.Meta(ge=1)] = 50
+    slices: Annotated[int, msgspec.Meta(ge=1)] = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Clearance:
+    """Smallest distance [m] of two links, or of a plume (named after its jet) and a link.
+
+    Where they overlap, minus the shortest translation that parts them. posture: where it occurs, index. angle: plumes
+    only, smallest angle between the jet axis and the link, seen from the nozzle, in that posture [rad].
+    """
+
+    first: str
+    second: str
+    distance: float
+    posture: int
+    angle: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class InterferenceReport:
+    """Pairs and plumes below the reporting distance, nearest first.
+
+    min_clearance, min_plume_clearance [m]: the smallest of each; the reporting distance if all are farther.
+    """
+
+    clearances: tuple[Clearance, ...]
+    plumes: tuple[Clearance, ...]
+    min_clearance: float
+    min_plume_clearance: float
+
+
+def range_postures(ranges: Mapping[str, tuple[float, float]], count: int, seed: int = 0) -> dict[str, Matrix]:
+    """Postures spread over joint ranges [rad]: the middle, both ends of every joint alone, and `count` Sobol points."""
+    names = list(ranges)
+    lower, upper = np.array([ranges[name] for name in names], dtype=float).T
+    middle = 0.5 * (lower + upper)
+    ends = np.tile(middle, (2 * len(names), 1))
+    ends[np.arange(len(names)), np.arange(len(names))] = lower
+    ends[len(names) + np.arange(len(names)), np.arange(len(names))] = upper
+    from scipy.stats import qmc  # 0.4 s to import, needed here only
+
+    sobol = qmc.Sobol(len(names), seed=seed).random_base2(max(0, int(np.ceil(np.log2(max(count, 1))))))[:count]
+    samples = np.vstack([middle, ends, lower + sobol * (upper - lower)])
+    return {name: samples[:, k] for k, name in enumerate(names)}
+
+
+def telling_samples(history: Matrix, count: int) -> Indices:
+    """Rows of a flown history (n, joints) where each joint is at its ends, and `count` evenly in time; ascending."""
+    even = np.linspace(0, len(history) - 1, count).round().astype(np.intp)
+    return np.unique(np.concatenate([history.argmin(axis=0), history.argmax(axis=0), even]))
+
+
+def hull_vertices(points: Matrix) -> Matrix:
+    """Vertices (m, 3) of the convex hull of a solid's points (n, 3)."""
+    return np.ascontiguousarray(points[ConvexHull(points).vertices], dtype=float)
+
+
+def convex_pieces(points: Matrix, triangles: NDArray[Any], count: int) -> list[Matrix]:
+    """Vertices of `count` convex pieces that cover a solid: hulls of slices across its longest extent.
+
+    points (n, 3), triangles (m, 3): closed surface. Raises: MeshError if it is not closed.
+    """
+    vertices, corners = np.array(points, dtype=np.float64), np.array(triangles, dtype=np.uint64)
+    body = manifold3d.Manifold(manifold3d.Mesh64(vert_properties=vertices, tri_verts=corners))
+    if body.status() != manifold3d.Error.NoError or body.is_empty():
+        raise MeshError(f"no convex pieces: the surface is not closed ({body.status().name})")
+    axis = int(np.argmax(np.ptp(points, axis=0)))
+    normal = np.eye(3)[axis]
+    low, high = points[:, axis].min(), points[:, axis].max()
+    pieces = []
+    for cut in np.linspace(high, low, count + 1)[1:-1]:
+        above, body = body.split_by_plane(normal, float(cut))
+        pieces.append(above)
+    return [hull_vertices(p.to_mesh64().vert_properties[:, :3]) for p in (*pieces, body) if not p.is_empty()]
+
+
+def link_pieces(robot: RobotDescription, given: Pieces) -> dict[str, list[Matrix]]:
+    """Convex pieces of every link that has a shape, link axes: those given, else the link's primitives.
+
+    Raises: UrdfError for a link whose shape is a mesh and for which no pieces are given.
+    """
+    pieces = {}
+    for name in robot.link_names:
+        if name in given:
+            pieces[name] = [np.asarray(points, dtype=float) for points in given[name]]
+        elif visuals := robot.link(name).visuals:
+            pieces[name] = [_visual_points(name, visual) for visual in visuals]
+    return pieces
+
+
+def check_interference(
+    robot: RobotDescription,
+    settings: InterferenceSettings,
+    postures: Mapping[str, Matrix],
+    pieces: Pieces | None = None,
+) -> InterferenceReport:
+    """Clearances of the watched bodies and of the plumes over postures.
+
+    postures: joint name -> (n,) positions [rad]; joints not named stay at zero. pieces: convex pieces of links in link
+    axes, instead of the link's visuals.
+    Raises: StudyError if a watched or ignored link or a jet is not there; UrdfError as `link_pieces` does.
+    """
+    shapes = link_pieces(robot, pieces or {})
+    _require_links(robot, shapes, settings)
+    count = len(next(iter(postures.values()))) if postures else 1
+    poses = _posture_poses(robot, postures, count)
+    limit = settings.report_below_mm * MILLIMETRE
+    contacts = _clearances(shapes, poses, _body_pairs(robot, shapes, settings), limit)
+    plume_shapes = shapes | {jet + PLUME: [_plume_hull(settings.plumes)] for jet in settings.plumes.jets}
+    plume_poses = poses | {jet + PLUME: poses[jet] for jet in settings.plumes.jets}
+    plume_pairs = [(jet + PLUME, link) for jet in settings.plumes.jets for link in shapes if link != jet]
+    plumes = [
+        _with_angle(found, plume_shapes, plume_poses)
+        for found in _clearances(plume_shapes, plume_poses, plume_pairs, limit)
+    ]
+    nearest = (min((c.distance for c in found), default=limit) for found in (contacts, plumes))
+    return InterferenceReport(tuple(contacts), tuple(plumes), *nearest)
+
+
+def flown_interference(
+    robot: RobotDescription,
+    settings: InterferenceSettings,
+    parts: Mapping[str, tuple[Sequence[PartPlacement], Sequence[Matrix]]],
+    joints: Sequence[str],
+    history: Matrix,
+    step: float,
+) -> dict[str, Any]:
+    """Clearances of a flown design for JSON, SI units: both minima, and every pair and plume below the limit.
+
+    robot: with the design's parts in it. parts: name -> its places and its convex pieces, part axes [m].
+    joints, history: joint names, and positions (n, joints) [rad] at times 0, step, 2 step … [s].
+    """
+    pieces: dict[str, list[Matrix]] = {}
+    for places, slices in parts.values():
+        pieces |= {place.link: [place_points(place, points) for points in slices] for place in places}
+    chosen = telling_samples(history, settings.postures)
+    postures = {name: history[chosen, k] for k, name in enumerate(joints)}
+    report = check_interference(robot, settings, postures, pieces)
+    times = [float(row) * step for row in chosen]
+    return {
+        "body_clearance": report.min_clearance,
+        "plume_clearance": report.min_plume_clearance,
+        "bodies": [
+            {"links": [c.first, c.second], "clearance": c.distance, "time": times[c.posture]} for c in report.clearances
+        ],
+        "plumes": [
+            {"jet": c.first, "link": c.second, "clearance": c.distance, "angle": c.angle, "time": times[c.posture]}
+            for c in report.plumes
+        ],
+    }
+
+
+PLUME = " plume"
+RIGID = 1e-12  # m and rotation entries: pairs whose relative pose changes by less do not move
+
+
+def _require_links(robot: RobotDescription, shapes: Mapping[str, object], settings: InterferenceSettings) -> None:
+    for name in (*settings.bodies, *(link for pair in settings.ignore for link in pair)):
+        if name not in shapes:
+            raise StudyError(f"interference: the robot has no link {name!r} with a shape")
+    for jet in settings.plumes.jets:
+        if jet not in robot.link_names:
+            raise StudyError(f"interference: the robot has no jet frame {jet!r}")
+
+
+def _body_pairs(
+    robot: RobotDescription, shapes: Mapping[str, object], settings: InterferenceSettings
+) -> list[tuple[str, str]]:
+    ignored = {frozenset(pair) for pair in settings.ignore}
+    ignored |= {frozenset((robot.joint(j).parent, robot.joint(j).child)) for j in robot.joint_names}
+    pairs = {frozenset((body, link)) for body in settings.bodies for link in shapes if link != body} - ignored
+    order = list(shapes)
+    numbers = sorted(sorted(order.index(name) for name in pair) for pair in pairs)
+    return [(order[i], order[j]) for i, j in numbers]
+
+
+def _posture_poses(robot: RobotDescription, postures: Mapping[str, Matrix], count: int) -> dict[str, Matrix]:
+    """root_T_link (count, 4, 4) of every link."""
+    poses = robot.frame_poses(postures)
+    return {name: np.broadcast_to(pose, (count, 4, 4)) for name, pose in poses.items()}
+
+
+def _clearances(
+    shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix], pairs: Sequence[tuple[str, str]], limit: float
+) -> list[Clearance]:
+    """Smallest signed distance of each pair over all postures, where it is below `limit`; nearest first."""
+    if not pairs:
+        return []
+    whole = {name: _placed_spheres([np.vstack(list(pieces))], poses[name]) for name, pieces in shapes.items()}
+    first, second = (_Spheres.joined([whole[name] for name in names]) for names in zip(*pairs, strict=True))
+    near = np.flatnonzero(first.gaps(second).min(axis=1) < limit).tolist()
+    names = {name for k in near for name in pairs[k]}
+    spheres = {name: _placed_spheres(shapes[name], poses[name]) for name in names}
+    found = (_clearance(shapes, spheres, *pairs[k], _relative(poses, *pairs[k]), limit) for k in near)
+    return sorted((c for c in found if c.distance < limit), key=lambda clearance: clearance.distance)
+
+
+def _clearance(
+    shapes: Mapping[str, Sequence[Matrix]],
+    spheres: Mapping[str, _Spheres],
+    a: str,
+    b: str,
+    a_T_b: Matrix,
+    limit: float,
+) -> Clearance:
+    """Smallest signed distance of one pair of links over postures (n, 4, 4); `limit` if it is not below."""
+    hulls = [*shapes[a], *shapes[b]]
+    bound = spheres[a].between(spheres[b])[:, :, : len(a_T_b)]  # (pieces of a, pieces of b, postures)
+    nearest = Clearance(a, b, limit, 0)
+    likely = bound <= bound.min(axis=(0, 1), keepdims=True)  # their distances rule out most of the others
+    for chosen in (likely, ~likely):
+        i, j, posture = np.nonzero(chosen & (bound < nearest.distance))
+        if len(i):
+            distances = hull_distances(hulls, i, j + len(shapes[a]), a_T_b[posture])
+            k = int(np.argmin(distances))
+            if distances[k] < nearest.distance:
+                nearest = Clearance(a, b, float(distances[k]), int(posture[k]))
+    return nearest
+
+
+def _relative(poses: Mapping[str, Matrix], a: str, b: str) -> Matrix:
+    """a_T_b in every posture, or in one (1, 4, 4) if it does not change."""
+    a_T_b = inverse(poses[a]) @ poses[b]
+    rigid = np.ptp(a_T_b, axis=0).max() < RIGID
+    return a_T_b[:1] if rigid else a_T_b
+
+
+@dataclass(frozen=True, slots=True)
+class _Spheres:
+    """Spheres around solids: centre (k, postures, 3) and radius (k,) [m]; gaps between them bound distances below."""
+
+    centre: Matrix
+    radius: Matrix
+
+    @staticmethod
+    def joined(parts: Sequence[_Spheres]) -> _Spheres:
+        return _Spheres(np.concatenate([p.centre for p in parts]), np.concatenate([p.radius for p in parts]))
+
+    def gaps(self, other: _Spheres) -> Matrix:
+        """(k, postures) from each sphere to the other one of the same number."""
+        apart = np.linalg.norm(self.centre - other.centre, axis=-1)
+        return np.asarray(apart - (self.radius + other.radius)[:, None])
+
+    def between(self, other: _Spheres) -> Matrix:
+        """(k, l, postures) from each sphere to each of the others."""
+        apart = np.linalg.norm(self.centre[:, None] - other.centre[None], axis=-1)
+        return np.asarray(apart - (self.radius[:, None] + other.radius)[..., None])
+
+
+def _placed_spheres(pieces: Sequence[Matrix], root_T_link: Matrix) -> _Spheres:
+    """A sphere around the points (n, 3) of each piece, in all postures (n, 4, 4)."""
+    center = np.array([0.5 * (points.min(axis=0) + points.max(axis=0)) for points in pieces])
+    radius = [np.linalg.norm(points - c, axis=1).max() for points, c in zip(pieces, center, strict=True)]
+    placed = center @ np.swapaxes(root_T_link[:, :3, :3], 1, 2) + root_T_link[:, None, :3, 3]  # (postures, k, 3)
+    return _Spheres(np.swapaxes(placed, 0, 1), np.array(radius))
+
+
+def _with_angle(found: Clearance, shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix]) -> Clearance:
+    """The clearance of a plume with its jet's name and the smallest angle to the link."""
+    jet_T_link = inverse(poses[found.first][found.posture]) @ poses[found.second][found.posture]
+    pieces = [piece @ jet_T_link[:3, :3].T + jet_T_link[:3, 3] for piece in shapes[found.second]]
+    angle = min(axis_angle(piece) for piece in pieces)
+    return Clearance(found.first.removesuffix(PLUME), found.second, found.distance, found.posture, angle)
+
+
+def axis_angle(points: Matrix) -> float:
+    """Smallest angle [rad] between the z axis and the hull of a solid's points (n, 3), seen from the origin.
+
+    Zero where the axis meets the hull; else on an edge p + t (q − p), where its cosine is stationary.
+    """
+    hull = ConvexHull(points)
+    facing = hull.equations[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossings = np.where(facing != 0.0, -hull.equations[:, 3] / facing, np.nan)
+    enters = np.max(crossings[facing < 0.0], initial=0.0)
+    leaves = np.min(crossings[facing > 0.0], initial=np.inf)
+    if enters <= leaves and np.all(hull.equations[facing == 0.0, 3] <= 0.0):
+        return 0.0
+    edges = np.vstack([hull.simplices[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))])
+    p, d = points[edges[:, 0]], points[edges[:, 1]] - points[edges[:, 0]]
+    pp, pd, dd = (np.einsum("ij,ij->i", a, b) for a, b in ((p, p), (p, d), (d, d)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (d[:, 2] * pp - p[:, 2] * pd) / (p[:, 2] * dd - d[:, 2] * pd)
+    nearest = p + np.clip(np.nan_to_num(t), 0.0, 1.0)[:, None] * d
+    candidates = np.vstack([points[hull.vertices], nearest])
+    return float(np.arctan2(np.hypot(candidates[:, 0], candidates[:, 1]), candidates[:, 2]).min())
+
+
+def _plume_hull(settings: PlumeSettings) -> Matrix:
+    start, length = settings.start_mm * MILLIMETRE, settings.length_mm * MILLIMETRE
+    radius = settings.radius_mm * MILLIMETRE
+    wide = radius + (length - start) * np.tan(settings.half_angle_deg * DEGREE)
+    return np.vstack([_ring(radius, start), _ring(wide, length)])
+
+
+def _ring(radius: float, z: float) -> Matrix:
+    angles = np.arange(CYLINDER_SIDES) * 2.0 * np.pi / CYLINDER_SIDES
+    return np.column_stack([radius * np.cos(angles), radius * np.sin(angles), np.full(CYLINDER_SIDES, z)])
+
+
+def _sphere_points() -> Matrix:
+    heights = np.sin(np.linspace(-np.pi / 2, np.pi / 2, CYLINDER_SIDES // 2 + 1))
+    return np.vstack([_ring(np.sqrt(1.0 - z * z), z) for z in heights])
+
+
+def _visual_points(link: str, visual: yourdfpy.Visual) -> Matrix:
+    shape = visual.geometry
+    if shape.box is not None:
+        points = np.array(list(product((-0.5, 0.5), repeat=3))) * shape.box.size
+    elif shape.cylinder is not None:
+        half = 0.5 * shape.cylinder.length
+        points = np.vstack([_ring(shape.cylinder.radius, z) for z in (-half, half)])
+    elif shape.sphere is not None:
+        points = shape.sphere.radius * _sphere_points()
+    else:
+        raise UrdfError(f"link {link}: its shape is a mesh; give its convex pieces")
+    origin = np.eye(4) if visual.origin is None else visual.origin
+    return np.asarray(points @ origin[:3, :3].T + origin[:3, 3])

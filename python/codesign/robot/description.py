@@ -1,0 +1,299 @@
+"""A robot description as an immutable value: read, checked, edited by copy, written.
+
+The XML is the data: what an edit does not touch is written as it was read, digit for digit, with the elements that only
+other tools know (sensors, transmissions, simulator settings). yourdfpy gives the typed view of the same text.
+"""
+
+from __future__ import annotations
+
+import copy
+import io
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yourdfpy
+from numpy.typing import ArrayLike
+
+from codesign.errors import UrdfError
+from codesign.files import write_text
+from codesign.robot.checks import check_elements, check_tree, parse_xml
+from codesign.robot.inertial import Inertial
+from codesign.transforms import Matrix, require_pose, rotation_about, rpy_from_rotation
+
+UPPER_TRIANGLE = ("xx", "xy", "xz", "yy", "yz", "zz")
+MOVING = ("revolute", "continuous", "prismatic")
+
+
+@dataclass(frozen=True, eq=False)
+class RobotDescription:
+    """Links, joints, inertials and shapes of a robot. Made by `load` or `from_text`; edits return a new one.
+
+    root_link: the link no joint moves. directory: where relative mesh paths start, if known.
+    Descriptions share the elements they have in common, so an edit costs the element it replaces.
+    """
+
+    root_link: str
+    directory: Path | None
+    _xml: ET.Element  # never changed: an edit replaces elements in a copy of the root
+
+    @classmethod
+    def load(cls, path: str | Path, as_published: bool = False) -> RobotDescription:
+        """Reads a URDF file; see `from_text`. Relative mesh paths start at the file's folder."""
+        path = Path(path)
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise UrdfError(f"{path}: cannot be read: {error.strerror}") from error
+        try:
+            return cls.from_text(content, as_published, path.resolve().parent)
+        except UrdfError as error:
+            raise UrdfError(f"{path}: {error}") from error
+
+    @classmethod
+    def from_text(
+        cls, text: str | bytes, as_published: bool = False, directory: Path | None = None
+    ) -> RobotDescription:
+        """Checks and reads URDF text.
+
+        as_published: accept inertias that no body can have (they are refused otherwise).
+        Raises: UrdfError naming the link or joint: malformed or too large text, document types, duplicate names,
+        missing or non-finite numbers, links that are not one tree, negative mass, non-physical inertia.
+        """
+        xml = parse_xml(text)
+        check_elements(xml)
+        robot = cls(check_tree(xml), directory, xml)
+        if not robot._model.validate():
+            raise UrdfError("; ".join(str(error) for error in robot._model.errors))
+        for name in () if as_published else robot.link_names:
+            inertial = robot.inertial(name)
+            if inertial is not None:
+                inertial.require_physical(name)
+        return robot
+
+    # ---- reading
+
+    @property
+    def name(self) -> str:
+        """Name of the robot."""
+        return str(self._xml.get("name"))
+
+    @property
+    def link_names(self) -> tuple[str, ...]:
+        """Names of all links, in the file's order."""
+        return tuple(self._links)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of all joints, fixed ones included, in the file's order."""
+        return tuple(self._joints)
+
+    @property
+    def moving_joint_names(self) -> tuple[str, ...]:
+        """Names of the joints with one degree of freedom, in the file's order."""
+        return tuple(name for name, joint in self._joints.items() if joint.type in MOVING)
+
+    @property
+    def total_mass(self) -> float:
+        """Sum of the masses of all links [kg]."""
+        return sum(inertial.mass for name in self._links if (inertial := self.inertial(name)) is not None)
+
+    def link(self, name: str) -> yourdfpy.Link:
+        """The link as yourdfpy reads it (do not change it); UrdfError if there is none."""
+        return _find(self._links, name, "link")
+
+    def joint(self, name: str) -> yourdfpy.Joint:
+        """The joint as yourdfpy reads it (do not change it); UrdfError if there is none."""
+        return _find(self._joints, name, "joint")
+
+    def inertial(self, link: str) -> Inertial | None:
+        """Inertial of a link in link axes; None for a link without mass."""
+        read = self.link(link).inertial
+        if read is None:
+            return None
+        origin = np.eye(4) if read.origin is None else read.origin
+        local = Inertial(read.mass, np.zeros(3), read.inertia)
+        return local if np.array_equal(origin, np.eye(4)) else local.moved(origin)
+
+    def joint_parent(self, joint: str) -> str:
+        """Name of the link a joint hangs from."""
+        parent = self._element("joint", joint).find("parent")
+        return "" if parent is None else parent.get("link", "")
+
+    def joint_origin(self, joint: str) -> Matrix:
+        """parent_T_child (4, 4) of a joint at position zero."""
+        origin = self.joint(joint).origin
+        return np.eye(4) if origin is None else np.array(origin)
+
+    def frame_poses(self, positions: Mapping[str, ArrayLike] | None = None) -> dict[str, Matrix]:
+        """root_T_link (4, 4) of every link; `positions`: joint name -> rad or m, zero where not given.
+
+        With positions (n,) of n postures, links that they move get (n, 4, 4).
+        """
+        positions = positions or {}
+        for name in positions:
+            if self.joint(name).type not in MOVING:
+                raise UrdfError(f"joint {name} does not move")
+        poses = {self.root_link: np.eye(4)}
+        children: dict[str, list[yourdfpy.Joint]] = {}
+        for joint in self._joints.values():
+            children.setdefault(joint.parent, []).append(joint)
+        pending = [self.root_link]
+        while pending:
+            parent = pending.pop()
+            for joint in children.get(parent, ()):
+                motion = _joint_motion(joint, positions.get(joint.name, 0.0))
+                poses[joint.child] = poses[parent] @ self.joint_origin(joint.name) @ motion
+                pending.append(joint.child)
+        return poses
+
+    def mesh_filenames(self) -> list[tuple[str, str]]:
+        """(link, filename) of every mesh of the robot's visuals and collisions, as written in the file."""
+        return [
+            (str(link.get("name")), str(mesh.get("filename")))
+            for link in self._xml.findall("link")
+            for mesh in link.iter("mesh")
+        ]
+
+    # ---- editing: each returns a new description
+
+    def replace_inertial(self, link: str, inertial: Inertial) -> RobotDescription:
+        """The robot with the whole inertial of a link replaced: mass, centre of mass and full tensor, link axes.
+
+        Raises: UrdfError naming the link if it does not exist or the inertial is not physical.
+        """
+        inertial.require_physical(link)
+        element = self._copied("link", link)
+        _replace(element, "inertial", _inertial_element(inertial))
+        return self._with(element)
+
+    def set_joint_origin(self, joint: str, parent_T_child: ArrayLike) -> RobotDescription:
+        """The robot with a joint's child placed at `parent_T_child` (4, 4) in its parent, at joint position zero."""
+        T = require_pose(parent_T_child, f"origin of joint {joint}")
+        element = self._copied("joint", joint)
+        _replace(element, "origin", _origin_element(T))
+        return self._with(element)
+
+    def set_mesh(
+        self, link: str, filename: str, link_T_mesh: ArrayLike, scale: float = 1.0, material: str | None = None
+    ) -> RobotDescription:
+        """The robot with one mesh as the only visual and collision shape of a link.
+
+        filename: as it is to stand in the URDF (relative path or package://…). scale: file units to metres.
+        link_T_mesh: (4, 4). material: name of a material of the robot; None keeps the link's first one.
+        """
+        T = require_pose(link_T_mesh, f"mesh of link {link}")
+        element = self._copied("link", link)
+        old_material = element.find("visual/material")
+        for shape in (*element.findall("visual"), *element.findall("collision")):
+            element.remove(shape)
+        for tag in ("visual", "collision"):
+            shape = ET.SubElement(element, tag)
+            shape.append(_origin_element(T))
+            geometry = ET.SubElement(shape, "geometry")
+            ET.SubElement(geometry, "mesh", filename=filename, scale=number_text([scale] * 3))
+            if tag == "visual" and material is not None:
+                ET.SubElement(shape, "material", name=material)
+            elif tag == "visual" and old_material is not None:
+                shape.append(old_material)
+        return self._with(element)
+
+    def with_mesh_filenames(self, renamed: Mapping[str, str]) -> RobotDescription:
+        """The robot with mesh filenames replaced: old -> new; those not named stay."""
+        xml = copy.deepcopy(self._xml)
+        for mesh in xml.iter("mesh"):
+            mesh.set("filename", renamed.get(str(mesh.get("filename")), str(mesh.get("filename"))))
+        return RobotDescription(self.root_link, self.directory, xml)
+
+    # ---- writing
+
+    def to_text(self) -> str:
+        """URDF text; what no edit touched stands as it was read."""
+        xml = copy.deepcopy(self._xml)
+        ET.indent(xml)
+        return '<?xml version="1.0"?>\n' + ET.tostring(xml, encoding="unicode") + "\n"
+
+    def write(self, path: str | Path) -> Path:
+        """Writes the URDF, whole or not at all; returns the path."""
+        return write_text(path, self.to_text())
+
+    # ---- internal
+
+    @cached_property
+    def _model(self) -> yourdfpy.URDF:
+        return yourdfpy.URDF.load(io.BytesIO(ET.tostring(self._xml)), build_scene_graph=False, load_meshes=False)
+
+    @cached_property
+    def _links(self) -> dict[str, yourdfpy.Link]:
+        return {link.name: link for link in self._model.robot.links}
+
+    @cached_property
+    def _joints(self) -> dict[str, yourdfpy.Joint]:
+        return {joint.name: joint for joint in self._model.robot.joints}
+
+    def _element(self, tag: str, name: str) -> ET.Element:
+        for element in self._xml.findall(tag):
+            if element.get("name") == name:
+                return element
+        raise UrdfError(f"the robot has no {tag} {name!r}")
+
+    def _copied(self, tag: str, name: str) -> ET.Element:
+        return copy.deepcopy(self._element(tag, name))
+
+    def _with(self, element: ET.Element) -> RobotDescription:
+        xml = copy.copy(self._xml)
+        for index, old in enumerate(xml):
+            if old.tag == element.tag and old.get("name") == element.get("name"):
+                xml[index] = element
+        return RobotDescription(self.root_link, self.directory, xml)
+
+
+def number_text(values: ArrayLike) -> str:
+    """Numbers of an URDF attribute: shortest text that reads back exactly, no negative zero."""
+    return " ".join(repr(float(value) + 0.0) for value in np.asarray(values, dtype=float).ravel())
+
+
+def _find(named: Mapping[str, Any], name: str, kind: str) -> Any:
+    try:
+        return named[name]
+    except KeyError:
+        raise UrdfError(f"the robot has no {kind} {name!r}") from None
+
+
+def _joint_motion(joint: yourdfpy.Joint, position: ArrayLike) -> Matrix:
+    position = np.asarray(position, dtype=float)
+    motion = np.broadcast_to(np.eye(4), (*position.shape, 4, 4)).copy()
+    if joint.type in MOVING:
+        axis = joint.axis / np.linalg.norm(joint.axis)
+        if joint.type == "prismatic":
+            motion[..., :3, 3] = position[..., None] * axis
+        else:
+            motion[..., :3, :3] = rotation_about(axis, position)
+    return motion
+
+
+def _replace(element: ET.Element, tag: str, child: ET.Element) -> None:
+    old = element.find(tag)
+    position = 0 if old is None else list(element).index(old)
+    if old is not None:
+        element.remove(old)
+    element.insert(position, child)
+
+
+def _origin_element(T: Matrix) -> ET.Element:
+    return ET.Element("origin", xyz=number_text(T[:3, 3]), rpy=number_text(rpy_from_rotation(T[:3, :3])))
+
+
+def _inertial_element(inertial: Inertial) -> ET.Element:
+    element = ET.Element("inertial")
+    ET.SubElement(element, "origin", xyz=number_text(inertial.com), rpy=number_text(np.zeros(3)))
+    ET.SubElement(element, "mass", value=number_text(inertial.mass))
+    entries = {
+        f"i{key}": number_text(inertial.inertia["xyz".index(key[0]), "xyz".index(key[1])]) for key in UPPER_TRIANGLE
+    }
+    ET.SubElement(element, "inertia", entries)
+    return element

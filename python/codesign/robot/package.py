@@ -1,0 +1,138 @@
+"""Mesh files of a robot description: found without leaving the folders allowed, and exported as a package folder."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path, PurePosixPath
+from xml.sax.saxutils import quoteattr
+
+from codesign.errors import UrdfError
+from codesign.robot.description import RobotDescription
+
+MeshWriter = Callable[[Path], object]
+
+
+def resolve_mesh(filename: str, directory: Path | None = None, packages: Sequence[Path] = ()) -> Path:
+    """File that a mesh reference of a URDF means.
+
+    Args:
+        filename: relative path, package://name/path, or file:// and absolute paths.
+        directory: folder of the URDF; relative paths start here.
+        packages: folders that hold packages, or are one (folder name = package name).
+    Raises: UrdfError if there is no such file, the scheme is unknown, or the path (links followed) lies outside all of
+    these folders.
+    """
+    candidates = _candidates(filename, directory, packages)
+    inside = [path for root, path in candidates if path.resolve().is_relative_to(root.resolve())]
+    if candidates and not inside:
+        raise UrdfError(f"mesh {filename!r}: the path leaves the folders it may be read from")
+    for path in inside:
+        if path.is_file():
+            return path.resolve()
+    where = ", ".join(str(path) for path in inside) or "no search path given"
+    raise UrdfError(f"mesh {filename!r}: not found ({where})")
+
+
+def _candidates(filename: str, directory: Path | None, packages: Sequence[Path]) -> list[tuple[Path, Path]]:
+    """(folder it must lie in, path) of every file that a mesh reference can mean."""
+    scheme, separator, rest = filename.partition("://")
+    home = [] if directory is None else [directory]
+    if not separator and not Path(filename).is_absolute():
+        return [(root, root / filename) for root in home]
+    if scheme == "file" or not separator:
+        return [(root, Path(rest if separator else filename)) for root in (*home, *packages)]
+    if scheme != "package":
+        raise UrdfError(f"mesh {filename!r}: scheme {scheme!r} is not supported (package, file, or a relative path)")
+    name, _, path = rest.partition("/")
+    if name in ("", ".", ".."):
+        raise UrdfError(f"mesh {filename!r}: no package name")
+    found = [(root / name, root / name / path) for root in packages]
+    return found + [(root, root / path) for root in packages if root.resolve().name == name]
+
+
+def write_urdf_package(
+    robot: RobotDescription,
+    out_dir: str | Path,
+    meshes: Mapping[str, MeshWriter] | None = None,
+    package: str | None = None,
+    packages: Sequence[Path] = (),
+) -> Path:
+    """Writes `robot.urdf` and `meshes/` into a folder, whole or not at all; returns the path of the URDF.
+
+    Args:
+        robot: what to write; every mesh it names ends up in `meshes/`.
+        out_dir: made if absent; existing files of the same names are replaced, others are left alone.
+        meshes: mesh filename as the robot names it -> function that writes that file (`part.write_stl`). Meshes not
+            given are copied from where `resolve_mesh` finds them.
+        package: name of the ROS package: meshes are then referenced as package://name/meshes/…, and a package.xml is
+            written, so that the folder must be named the same to be found; by default they are relative to the URDF.
+        packages: where package:// references of the robot are looked for.
+    Raises: UrdfError naming link and mesh if one is missing or outside the search path.
+    """
+    out_dir = Path(out_dir)
+    out_dir.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=out_dir.parent, prefix=f".{out_dir.name}.") as folder:
+        staged = Path(folder)
+        (staged / "meshes").mkdir()
+        prefix = "meshes/" if package is None else f"package://{package}/meshes/"
+        renamed: dict[str, str] = {}
+        for link, filename in robot.mesh_filenames():
+            if filename not in renamed:
+                target = staged / "meshes" / _unique_name(filename, renamed)
+                _stage_mesh(robot, link, filename, target, meshes or {}, packages)
+                renamed[filename] = prefix + target.name
+        robot.with_mesh_filenames(renamed).write(staged / "robot.urdf")
+        if package is not None:
+            (staged / "package.xml").write_text(_package_xml(package, robot.name), encoding="utf-8")
+        _move_into(staged, out_dir)
+    return out_dir / "robot.urdf"
+
+
+def _stage_mesh(
+    robot: RobotDescription,
+    link: str,
+    filename: str,
+    target: Path,
+    meshes: Mapping[str, MeshWriter],
+    packages: Sequence[Path],
+) -> None:
+    if filename in meshes:
+        meshes[filename](target)
+        return
+    try:
+        shutil.copyfile(resolve_mesh(filename, robot.directory, packages), target)
+    except UrdfError as error:
+        raise UrdfError(f"link {link}: {error}") from error
+
+
+def _unique_name(filename: str, renamed: Mapping[str, str]) -> str:
+    name = PurePosixPath(filename.partition("://")[2] or filename)
+    taken = {PurePosixPath(path).name for path in renamed.values()}
+    unique, number = name.name, 1
+    while unique in taken or not unique:
+        number += 1
+        unique = f"{name.stem}_{number}{name.suffix}"
+    return unique
+
+
+def _move_into(staged: Path, out_dir: Path) -> None:
+    """Meshes first, the URDF last: whoever sees the new URDF finds its meshes."""
+    (out_dir / "meshes").mkdir(parents=True, exist_ok=True)
+    files = sorted((path for path in staged.rglob("*") if path.is_file()), key=lambda path: path.name == "robot.urdf")
+    for path in files:
+        path.replace(out_dir / path.relative_to(staged))
+
+
+def _package_xml(package: str, robot: str) -> str:
+    description = quoteattr(f"URDF and meshes of {robot}")[1:-1]
+    return f"""<?xml version="1.0"?>
+<package format="3">
+  <name>{package}</name>
+  <version>0.0.0</version>
+  <description>{description}</description>
+  <maintainer email="user@localhost">user</maintainer>
+  <license>see the robot's own terms</license>
+</package>
+"""

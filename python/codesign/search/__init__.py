@@ -1,0 +1,1 @@
+"""Searches on the design grid: ask and tell, resume, progress. Nothing of physics."""

@@ -1,0 +1,345 @@
+"""The loop of a run: ask, evaluate, store, tell; the same for a fresh and for a resumed run.
+
+Results are told in the order of asking, so neither the number of workers nor the order in which evaluations finish
+decides anything. A resumed run goes through the same asks; a design that the store knows is not evaluated again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+import socket
+import sys
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from codesign import __version__
+from codesign.errors import StoreError
+from codesign.execution.pool import Executor, Outcome, Task
+from codesign.problem.evaluation import Evaluation
+from codesign.problem.pareto import FrontTracker
+from codesign.problem.protocols import Problem
+from codesign.search.base import Grid, Search
+from codesign.search.progress import Progress
+from codesign.storage.cache import PartCache
+from codesign.storage.store import Generation, Record, RunStore
+
+WAIT = 0.5  # s between looks at the clock while nothing finishes
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """When to ask: `first` designs at the start; once these are told, `batch` at a time, at most `window` untold.
+
+    Batches are told whole. batch = window = first: generations with a barrier (the default). batch = 1: steady state.
+    """
+
+    first: int
+    batch: int | None = None
+    window: int | None = None
+
+    def count(self, asked: int, told: int) -> int:
+        """Designs to ask for now."""
+        batch, window = self.batch or self.first, self.window or self.first
+        if asked == 0:
+            return self.first
+        waiting_for_start = told == 0
+        return 0 if waiting_for_start or asked - told + batch > window else batch
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """When to ask no more: after `evaluations` designs, `wall_time` [s], or `stall_generations` without progress."""
+
+    evaluations: int | None = None
+    wall_time: float | None = None
+    stall_generations: int | None = None
+    stall_tolerance: float = 1e-3
+
+    def stalled(self, history: list[float | None]) -> bool:
+        """Whether the hypervolume grew by less than the tolerance (relative) over the last generations."""
+        span = self.stall_generations
+        if span is None or len(history) <= span:
+            return False
+        before, now = history[-span - 1], history[-1]
+        return before is not None and now is not None and now - before <= self.stall_tolerance * abs(before)
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A search, when it asks, when it ends, and how many designs it will ask for at most."""
+
+    search: Search
+    schedule: Schedule
+    stop: Stop
+    total: int
+
+
+@dataclass(slots=True)
+class _Batch:
+    start: int
+    grids: list[Grid]
+
+
+class Loop:
+    """One session of a run."""
+
+    def __init__(
+        self,
+        study: Problem,
+        plan: Plan,
+        store: RunStore,
+        cache: PartCache | None = None,
+        progress: Callable[[Progress], None] | None = None,
+    ) -> None:
+        self._study, self._search, self._schedule, self._stop = study, plan.search, plan.schedule, plan.stop
+        self._store, self._cache, self._notify, self._total = store, cache, progress, plan.total
+        self._known = {record.grid: record for record in store.records() if record.trajectory == ""}
+        self._stored = len(self._known)
+        self._asked_before = store.asked()
+        self._batches: deque[_Batch] = deque()
+        self._results: dict[Grid, Evaluation] = {}
+        self._grids: list[Grid] = []  # by number
+        self._told = 0
+        self._told_counts = {"feasible": 0, "infeasible": 0, "failed": 0}
+        self._counts = dict(self._told_counts)
+        for record in self._known.values():
+            self._counts[record.evaluation.status] += 1
+        self._cached = 0
+        self._queue: deque[int] = deque()
+        self._running: set[int] = set()
+        self._tracker = FrontTracker(study.objectives)
+        self._generation: list[Evaluation] = []  # told since the last generation's end
+        self._history: list[float | None] = []
+        self._ended: str | None = None
+        self._earlier = sum(session["seconds"] for session in store.sessions())
+        self._began = time.monotonic()
+        self._session = 0
+
+    def run(self, executor: Callable[[], Executor]) -> None:
+        """Goes on until the search ends; on any exception leaves the store ready to be resumed."""
+        self._session = self._store.start_session(_provenance(self._study))
+        workers: Executor | None = None
+        outcome = "stopped by an error"
+        try:
+            self._advance()
+            if self._pending():
+                workers = executor()
+                while self._pending():
+                    self._hand_out(workers)
+                    self._take(workers.collect(WAIT))
+                    self._advance()
+            if self._generation:
+                self._end_generation()
+            outcome = self._ended or "budget used up"
+        except KeyboardInterrupt:
+            outcome = "interrupted"
+            raise
+        finally:
+            if workers is not None:
+                workers.close()
+            self._end(outcome)
+
+    def _pending(self) -> bool:
+        return bool(self._batches)
+
+    def _elapsed(self) -> float:
+        return float(self._earlier + time.monotonic() - self._began)
+
+    def _end(self, outcome: str) -> None:
+        failing = sys.exc_info()[0] is not None
+        try:
+            with self._store.transaction():
+                self._store.mark([self._grids[number] for number in self._running], "queued")
+                self._store.update_session(self._session, time.monotonic() - self._began, outcome)
+        except StoreError:
+            if not failing:  # else the first error is the one to see; an open row is queued again by resume
+                raise
+
+    def _advance(self) -> None:
+        """Asks for what may be asked, then tells the oldest batch if it is complete, until neither is possible.
+
+        Asking goes first: else results known at once (stored, cached) would be told before designs that were asked for
+        without them the first time.
+        """
+        while True:
+            while self._ask():
+                pass
+            if not self._tell():
+                self._report()
+                return
+
+    def _tell(self) -> bool:
+        if not self._batches or any(grid not in self._results for grid in self._batches[0].grids):
+            return False
+        batch = self._batches.popleft()
+        evaluations = [self._results.pop(grid) for grid in batch.grids]
+        self._search.tell(batch.grids, evaluations)
+        self._told += len(evaluations)
+        for evaluation in evaluations:
+            self._told_counts[evaluation.status] += 1
+        self._generation += evaluations
+        if len(self._generation) >= self._schedule.first:
+            self._end_generation()
+        return True
+
+    def _end_generation(self) -> None:
+        self._history.append(self._tracker.add(self._generation))
+        self._generation = []
+        numbers = {grid: number for number, grid in enumerate(self._grids)}
+        population = tuple(numbers[grid] for grid in self._search.population())
+        state = Generation(
+            len(self._history) - 1,
+            self._told,
+            **self._told_counts,
+            hypervolume=self._history[-1],
+            population=population,
+        )
+        self._store.add_generation(state)
+        self._store.checkpoint()
+
+    def _ask(self) -> bool:
+        asked = len(self._grids)
+        count = self._schedule.count(asked, self._told)
+        if self._stop.evaluations is not None:
+            count = min(count, self._stop.evaluations - asked)
+        if count <= 0 or self._ended is not None or self._must_stop(asked):
+            return False
+        grids = self._search.ask(count)
+        if not grids:
+            self._ended = "every design of the grid has been evaluated"
+            return False
+        self._batches.append(_Batch(asked, grids))
+        self._grids += grids
+        self._admit(asked, grids)
+        return True
+
+    def _must_stop(self, asked: int) -> bool:
+        if asked < self._asked_before:  # a resumed run asks again for all that it has
+            return False
+        if self._stop.stalled(self._history):
+            self._ended = f"hypervolume stalled over {self._stop.stall_generations} generations"
+        elif self._stop.wall_time is not None and self._elapsed() > self._stop.wall_time:
+            self._ended = f"wall time of {self._stop.wall_time:g} s used up"
+        return self._ended is not None
+
+    def _admit(self, asked: int, grids: list[Grid]) -> None:
+        """Makes rows of newly asked designs; takes from the store and the cache what they have."""
+        designs = {grid: self._study.space.from_indices(grid).to_dict() for grid in grids}
+        rows = list(enumerate(grids, asked))
+        new = [(number, grid) for number, grid in rows if grid not in self._known]
+        generation = asked // self._schedule.first
+        with self._store.transaction():
+            self._store.enqueue([(n, generation, grid, designs[grid]) for n, grid in rows], self._study.hash)
+            for number, grid in new:
+                document = self._cache.get(self._key(grid)) if self._cache is not None else None
+                if document is None:
+                    self._queue.append(number)
+                else:
+                    self._cached += 1
+                    self._keep(Record(number, None, grid, "", Evaluation.from_dict(document), cached=True))
+        for number, grid in enumerate(grids, asked):
+            if grid in self._known:
+                record = self._known.pop(grid)
+                if record.number not in (None, number):
+                    raise StoreError(
+                        f"{self._store.path}: this program asks for the stored designs in another order; "
+                        f"use the versions that the run was made with: {self._store.sessions()[0]['provenance']}"
+                    )
+                self._results[grid] = record.evaluation
+
+    def _hand_out(self, executor: Executor) -> None:
+        while self._queue and executor.free() > 0:
+            number = self._queue.popleft()
+            self._running.add(number)
+            design = self._study.space.from_indices(self._grids[number]).to_dict()
+            executor.submit(Task(number, design))
+        with self._store.transaction():
+            self._store.mark([self._grids[number] for number in self._running], "running")
+
+    def _take(self, outcomes: list[Outcome]) -> None:
+        if not outcomes:
+            self._report()
+            return
+        with self._store.transaction():
+            for outcome in outcomes:
+                number = outcome.task.number
+                place = (number, None, self._grids[number], "")
+                self._keep(Record(*place, self._evaluation(outcome), False, outcome.worker, outcome.seconds))
+                self._running.discard(number)
+            self._store.update_session(self._session, time.monotonic() - self._began)
+        if self._cache is not None:
+            for outcome in outcomes:
+                evaluation = self._evaluation(outcome)
+                if evaluation.status != "failed":
+                    self._cache.put(self._key(self._grids[outcome.task.number]), evaluation.to_dict())
+
+    def _evaluation(self, outcome: Outcome) -> Evaluation:
+        return checked(outcome.evaluation, self._study.objectives)
+
+    def _keep(self, record: Record) -> None:
+        self._store.finish(record)
+        self._results[record.grid] = record.evaluation
+        self._counts[record.evaluation.status] += 1
+
+    def _key(self, grid: Grid) -> str:
+        text = json.dumps([self._study.hash, list(grid)])
+        return "design " + hashlib.sha256(text.encode()).hexdigest()
+
+    def _report(self) -> None:
+        if self._notify is None:
+            return
+        done = sum(self._counts.values())
+        state = Progress(
+            **self._counts,
+            running=len(self._running),
+            total=max(self._total, done),
+            evaluated_here=done - self._stored - self._cached,
+            cached=self._cached,
+            seconds=time.monotonic() - self._began,
+            generation=len(self._history),
+            hypervolume=self._history[-1] if self._history else None,
+            ended=self._ended,
+        )
+        self._notify(state)
+
+
+def checked(evaluation: Evaluation, objectives: tuple[str, ...]) -> Evaluation:
+    """The evaluation, or a failed one if it breaks what every evaluation must hold."""
+    problem = None
+    if evaluation.status == "feasible":
+        missing = [name for name in objectives if name not in evaluation.objectives]
+        if missing:
+            problem = f"feasible without the objective {missing[0]}"
+        elif evaluation.total_violation > 0:
+            problem = "feasible with violated constraints"
+    elif evaluation.status == "infeasible" and not evaluation.total_violation > 0:
+        problem = "infeasible without a violated constraint"
+    return Evaluation.failure(evaluation.design, f"inconsistent result: {problem}") if problem else evaluation
+
+
+def _provenance(study: Problem) -> dict[str, Any]:
+    """Where and with what a session runs."""
+    from importlib import metadata
+
+    versions = {}
+    for package in ("numpy", "scipy", "pymoo"):
+        try:
+            versions[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            versions[package] = "missing"
+    return {
+        "version": __version__,
+        "study_hash": study.hash,
+        "host": socket.gethostname(),
+        "pid": os.getpid(),
+        "machine": platform.platform(),
+        "processors": os.cpu_count(),
+        "python": platform.python_version(),
+        "packages": versions,
+    }

@@ -1,0 +1,204 @@
+"""A study's optimisation: start a search, continue it; sweeps and lists of designs by the same means."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TypedDict, Unpack
+
+from codesign.errors import StudyError
+from codesign.execution.pool import DEFAULT_LOADER, Executor, Limits, LocalPool, StudyRef
+from codesign.execution.worker import load
+from codesign.problem.protocols import Problem
+from codesign.search.base import sub_grid
+from codesign.search.driver import Loop
+from codesign.search.progress import Progress
+from codesign.search.settings import Settings
+from codesign.storage.cache import SqliteCache, default_cache_path
+from codesign.storage.runs import Run, load_run
+from codesign.storage.store import RunStore
+
+StudyLike = Problem | str | Path
+
+
+class Resources(TypedDict, total=False):
+    """Where evaluations run, and who is told; decides nothing about the results.
+
+    workers: worker processes here; None or left out: as in the study's [execution].
+    cluster: a Dask scheduler's address (tcp://host:port), or local:N for N Dask workers here, instead of `workers`.
+    cache: file of the cache of parts and designs; None: no cache; left out: the one of all runs of the study.
+    progress: called with the state after every change.
+    """
+
+    workers: int | None
+    cluster: str | None
+    cache: Path | str | None
+    progress: Callable[[Progress], None] | None
+
+
+def optimize(
+    study: StudyLike,
+    *,
+    out: str | Path,
+    population: int | None = None,
+    generations: int | None = None,
+    evaluations: int | None = None,
+    seed: int = 1,
+    algorithm: str = "nsga2",
+    start: str = "sobol",
+    first: Sequence[Mapping[str, float]] = (),
+    steady: bool = False,
+    lag: int | None = None,
+    wall_time: float | None = None,
+    stall_generations: int | None = None,
+    **resources: Unpack[Resources],
+) -> Run:
+    """Searches the study's design grid for the best compromises and keeps every evaluation in folder `out`.
+
+    Args:
+        study: a loaded study, or a shipped study's name or the path of a study file.
+        out: folder of the run; must not hold one yet.
+        population, generations: as in the study's [optimizer] unless given; the budget is their product.
+        evaluations: the budget itself, instead of generations.
+        seed: decides everything that is random.
+        algorithm: nsga2, nsga3, agemoea, agemoea2, smsemoa, or random (random search).
+        start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
+        first: designs to evaluate at the head of the start population.
+        steady: offspring without waiting for whole generations; `lag` designs unranked at most (default: population).
+        wall_time: seconds after which no new design is asked for.
+        stall_generations: ends when the hypervolume has grown by less than 0.1 % over so many generations.
+        resources: see Resources.
+
+    Returns: the finished run.
+    Raises: StoreError (folder holds a run, is being written, disk full), ExecutionError (workers do not start),
+        ValueError (wrong settings), KeyboardInterrupt (Ctrl-C: nothing stored is lost, `resume` continues).
+    """
+    study = load_problem(study)
+    optimizer = study.optimizer
+    size = optimizer.population if population is None else population
+    count = optimizer.generations if generations is None else generations
+    settings = Settings(
+        algorithm=algorithm,
+        population=size,
+        evaluations=size * count if evaluations is None else evaluations,
+        crossover_probability=optimizer.crossover_probability,
+        mutation_probability=optimizer.mutation_probability,
+        seed=seed,
+        start=start,
+        first=tuple(study.space.indices(design) for design in first),
+        steady=steady,
+        lag=lag,
+        wall_time=wall_time,
+        stall_generations=stall_generations,
+    )
+    return run_search(study, settings, out, **resources)
+
+
+def sweep(study: StudyLike, counts: Sequence[int], *, out: str | Path, **resources: Unpack[Resources]) -> Run:
+    """Evaluates every design of a sub-grid with `counts[i]` evenly spread values of variable i."""
+    study = load_problem(study)
+    return run_search(study, Settings.listing(sub_grid(study.space, counts)), out, **resources)
+
+
+def evaluate_designs(
+    study: StudyLike, designs: Sequence[Mapping[str, float]], *, out: str | Path, **resources: Unpack[Resources]
+) -> Run:
+    """Evaluates the given designs, each once, kept and resumable like any run."""
+    study = load_problem(study)
+    grids = [study.space.indices(design) for design in designs]
+    return run_search(study, Settings.listing(grids), out, **resources)
+
+
+def run_search(study: Problem, settings: Settings, out: str | Path, **resources: Unpack[Resources]) -> Run:
+    """A new run of the search that `settings` describe; arguments and errors as in `optimize`."""
+    settings.plan(study.space, study.objectives)  # refuses wrong settings before anything is written
+    ref = StudyRef.of(study)
+    cache = cache_path(study, resources)
+    meta = {
+        "study": {"name": study.name, "source": ref.source, "loader": ref.loader, "hash": ref.hash},
+        "variables": [asdict(variable) for variable in study.space.variables],
+        "objectives": list(study.objectives),
+        "settings": settings.document(),
+        "cache": None if cache is None else str(cache),
+    }
+    with RunStore.create(out, meta) as store:
+        _drive(study, settings, store, cache, resources)
+    return load_run(out)
+
+
+def resume(
+    out: str | Path,
+    *,
+    study: Problem | None = None,
+    evaluations: int | None = None,
+    **resources: Unpack[Resources],
+) -> Run:
+    """Continues a run: repeats its search over the stored rows, then goes on as if it had never stopped.
+
+    Args:
+        study: the study, if it cannot be loaded from where the run found it.
+        evaluations: a larger budget than the run had.
+        resources: see Resources; the cache is the run's unless given.
+
+    Raises: StoreError (no run, being written), StudyError (the study's results would be others than the stored ones);
+        else as `optimize`.
+    """
+    with RunStore.open(out) as store:
+        study = stored_study(store, study)
+        settings = Settings.from_document(store.meta["settings"])
+        if evaluations is not None:
+            settings = replace(settings, evaluations=evaluations)
+            store.set_meta("settings", settings.document())
+        _drive(study, settings, store, resources.get("cache", store.meta["cache"]), resources)
+    return load_run(out)
+
+
+def load_problem(study: StudyLike) -> Problem:
+    """The study itself, or loaded from its name or path."""
+    return load(DEFAULT_LOADER, str(study)) if isinstance(study, str | Path) else study
+
+
+def stored_study(store: RunStore, study: Problem | None = None) -> Problem:
+    """The study of a run, loaded from where the run found it unless given; refused if it is no longer the same."""
+    known = store.meta["study"]
+    if study is None:
+        study = load(known["loader"], known["source"])
+    if study.hash != known["hash"]:
+        raise StudyError(
+            f"{known['source']}: the study, or the program, has changed since {store.path.parent} was started, so new "
+            "rows would not be comparable with its own: start a new run (the cache keeps what is unchanged)"
+        )
+    return study
+
+
+def cache_path(study: Problem, resources: Resources) -> Path | str | None:
+    """The cache file that the arguments ask for."""
+    return resources.get("cache", default_cache_path(study.name))
+
+
+def make_executor(study: Problem, resources: Resources, cache: Path | str | None, tasks: int) -> Executor:
+    """Local workers (no more than there are tasks) or a Dask cluster, as the arguments ask for."""
+    execution = study.execution
+    limits = Limits(execution.time_limit_s, execution.memory_limit_mib)
+    cluster = resources.get("cluster")
+    if cluster is not None:
+        from codesign.execution.cluster import DaskExecutor
+
+        return DaskExecutor(StudyRef.of(study), cluster, limits, cache)
+    workers = resources.get("workers")
+    count = execution.workers if workers is None else workers
+    if count < 1:
+        raise ValueError(f"workers = {count}: at least 1 is needed")
+    return LocalPool(StudyRef.of(study), min(count, tasks), limits, cache)
+
+
+def _drive(study: Problem, settings: Settings, store: RunStore, cache: Path | str | None, resources: Resources) -> None:
+    designs = SqliteCache(cache) if cache is not None else None
+    plan = settings.plan(study.space, study.objectives)
+    try:
+        loop = Loop(study, plan, store, designs, resources.get("progress"))
+        loop.run(lambda: make_executor(study, resources, cache, plan.total))
+    finally:
+        if designs is not None:
+            designs.close()

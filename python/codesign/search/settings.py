@@ -1,0 +1,95 @@
+"""Settings of a run: everything that decides which designs it evaluates, kept in its store."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from codesign.problem.design_space import DesignSpace
+from codesign.search.base import Grid, Listed, RandomSearch, Search, start_points
+from codesign.search.driver import Plan, Schedule, Stop
+from codesign.search.pymoo_search import ALGORITHMS, Evolution, EvolutionSettings
+
+UNTOLD = 4096  # designs that a search which learns nothing asks for ahead
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Which designs a run evaluates, given what it is told; resume needs nothing else.
+
+    algorithm: one of evolution.ALGORITHMS; `random`; `listed` for the grid points in `listed`.
+    evaluations: the whole budget, start population included; None: until nothing is left to ask for.
+    first: grid points at the head of the start population.
+    steady: no barrier between generations; at most `lag` designs (default: population) are unranked at a time.
+    """
+
+    algorithm: str = "nsga2"
+    population: int = 25
+    evaluations: int | None = 1000
+    crossover_probability: float = 0.9
+    mutation_probability: float = 0.25
+    seed: int = 1
+    start: str = "sobol"
+    first: tuple[Grid, ...] = ()
+    steady: bool = False
+    lag: int | None = None
+    wall_time: float | None = None
+    stall_generations: int | None = None
+    stall_tolerance: float = 1e-3
+    listed: tuple[Grid, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.population < 2:
+            raise ValueError(f"population = {self.population}: at least 2 is needed")
+        for name in ("evaluations", "lag", "wall_time", "stall_generations"):
+            value = getattr(self, name)
+            if value is not None and value <= 0:
+                raise ValueError(f"{name} = {value}: must be above 0")
+        for name in ("crossover_probability", "mutation_probability"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise ValueError(f"{name} = {getattr(self, name)}: must be in 0 … 1")
+
+    @classmethod
+    def listing(cls, grids: Sequence[Grid]) -> Settings:
+        """Of a run that evaluates the given grid points, each once."""
+        return cls(algorithm="listed", listed=tuple(dict.fromkeys(grids)), evaluations=None)
+
+    def document(self) -> dict[str, Any]:
+        """As stored: JSON values only."""
+        document: dict[str, Any] = json.loads(json.dumps(asdict(self)))
+        return document
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any]) -> Settings:
+        """Inverse of `document`."""
+        lists = {name: tuple(tuple(grid) for grid in document[name]) for name in ("first", "listed")}
+        return cls(**(dict(document) | lists))
+
+    def search(self, space: DesignSpace, objectives: Sequence[str]) -> Search:
+        """The search that these settings describe. Raises: ValueError if they make no sense."""
+        if self.algorithm == "listed":
+            return Listed(self.listed)
+        if self.algorithm == "random":
+            return RandomSearch(space, self.seed)
+        evolution = EvolutionSettings(
+            self.algorithm, self.population, self.crossover_probability, self.mutation_probability, self.seed
+        )
+        first = list(dict.fromkeys(self.first))
+        start = [*first, *(g for g in start_points(space, self.population, self.start, self.seed) if g not in first)]
+        return Evolution(space, objectives, evolution, start[: max(self.population, len(first))])
+
+    def plan(self, space: DesignSpace, objectives: Sequence[str]) -> Plan:
+        """The search with when to ask and when to end. Raises: ValueError if the settings make no sense."""
+        size = self.population
+        if self.algorithm not in ALGORITHMS:
+            schedule = Schedule(size, size, max(UNTOLD, size))
+        elif self.steady:
+            schedule = Schedule(size, 1, self.lag or size)
+        else:
+            schedule = Schedule(size)
+        stop = Stop(self.evaluations, self.wall_time, self.stall_generations, self.stall_tolerance)
+        total = min(self.evaluations or len(self.listed), math.prod(space.levels))
+        return Plan(self.search(space, objectives), schedule, stop, total)

@@ -1,0 +1,348 @@
+"""A study as written in study.toml: strictly typed structs, units in the key names, unknown keys refused."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from msgspec import Meta, Struct, field
+
+from codesign.robot.assembly import PartPlacement
+from codesign.robot.clearance import InterferenceSettings
+
+Positive = Annotated[float, Meta(gt=0)]
+NonNegative = Annotated[float, Meta(ge=0)]
+Probability = Annotated[float, Meta(ge=0, le=1)]
+Sign = Annotated[float, Meta(ge=-1, le=1)]
+Vector3 = tuple[float, float, float]
+Range = tuple[float, float]
+
+
+class Section(Struct, frozen=True, forbid_unknown_fields=True):
+    """Base of all sections: immutable, unknown keys are errors."""
+
+
+class VariableConfig(Section, frozen=True, kw_only=True):
+    """One design variable. `sets` lists numbers of the study (dotted paths) that take the variable's value."""
+
+    minimum: float = field(name="min")
+    maximum: float = field(name="max")
+    step: Positive
+    unit: Literal["", "mm", "deg"] = ""
+    label: str = ""
+    sets: list[str] = []
+
+
+class MaterialConfig(Section, frozen=True, kw_only=True):
+    """Isotropic linear elastic material."""
+
+    young_modulus_gpa: Positive
+    poisson_ratio: Annotated[float, Meta(gt=-1, lt=0.5)]
+    yield_strength_mpa: Positive
+    density_kg_m3: Positive
+
+
+class LoadConfig(Section, frozen=True, kw_only=True):
+    """A total force that presses on a named face, uniformly, against its outward normal."""
+
+    face: str
+    pressing_n: float
+
+
+class PartConfig(Section, frozen=True, kw_only=True):
+    """One parametric part: the class that shapes it, the variables it takes, its material and its places in the robot.
+
+    shape: `module:Class`; the module is a file beside study.toml or any importable module.
+    parameters: the part's parameter -> design variable. supports: faces that are clamped. options: further keyword
+    arguments of the class.
+    """
+
+    name: str
+    shape: str
+    parameters: dict[str, str]
+    material: str
+    supports: list[str]
+    loads: list[LoadConfig]
+    placements: list[PartPlacement] = []
+    options: dict[str, float | bool | str] = {}
+
+
+class RobotConfig(Section, frozen=True, kw_only=True):
+    """The robot that the parts are built into; path relative to study.toml.
+
+    visuals: package:// path of a URDF with the same links, whose meshes pictures show where its package is installed.
+    """
+
+    urdf: str
+    visuals: str = ""
+
+
+class FemConfig(Section, frozen=True, kw_only=True):
+    """How part stress is computed; see `codesign.parts.load_case.StressSettings`."""
+
+    geometry: Literal["simplified", "full"] = "simplified"
+    load: str = "uniform"
+    support: str = "published"
+    accuracy: Literal["optimisation", "fine", "converged"] = "optimisation"
+    exclusion_distance_mm: NonNegative = 3.0
+    tolerance: Positive = 0.05
+
+
+class InitialStateConfig(Section, frozen=True, kw_only=True):
+    """State at the start of a flight."""
+
+    base_position_m: Vector3
+    base_rpy_deg: Vector3 = (0.0, 0.0, 0.0)
+    thrust_n: NonNegative
+    free_fall_first_step: bool = True
+
+
+class JointGroupConfig(Section, frozen=True, kw_only=True):
+    """Joints that share controller settings; one value of each list a joint."""
+
+    name: str
+    joints: list[str]
+    initial_rad: list[float]
+    ranges_deg: list[Range]
+    range_scale: Positive = 1.0
+    posture_gain_hz: NonNegative
+    velocity_weight: NonNegative = 0.0
+
+
+class JetsConfig(Section, frozen=True, kw_only=True):
+    """Frames whose minus z axis the thrust pushes along."""
+
+    frames: list[str]
+    max_thrust_n: Positive
+    max_thrust_rate_n_s: Positive
+    symmetric_pairs: list[tuple[str, str]] = []
+
+
+class CommandSpeedsConfig(Section, frozen=True, kw_only=True):
+    """How fast a command of sign 1 moves the reference."""
+
+    forward_m_s: Positive
+    vertical_m_s: Positive
+    lateral_m_s: Positive = 0.3125
+    roll_deg_s: Positive = 18.75
+    pitch_deg_s: Positive
+    yaw_deg_s: Positive
+
+
+class ReferencesConfig(Section, frozen=True, kw_only=True):
+    """From commands to smooth references."""
+
+    roll_range_deg: Range
+    pitch_range_deg: Range
+    position_smoothing_s: Positive
+    jerk_smoothing_s: Positive
+    rotation_gain_hz: Positive
+    angular_velocity_smoothing_s: Positive
+
+
+class GainsConfig(Section, frozen=True, kw_only=True):
+    """Controller gains; docs/flight.md gives the control law."""
+
+    linear_proportional: NonNegative
+    linear_derivative: NonNegative
+    linear_momentum: Positive
+    attitude_proportional: NonNegative
+    attitude_derivative: NonNegative
+    joint_integral: NonNegative
+    joint_proportional: NonNegative
+
+
+class WeightsConfig(Section, frozen=True, kw_only=True):
+    """Weights of the momentum and the torque QP."""
+
+    momentum: NonNegative
+    constant_inertia: NonNegative
+    posture: NonNegative
+    joint_velocity: NonNegative
+    thrust_rate: NonNegative
+    thrust_symmetry: NonNegative
+    regularization: Positive
+    torque: Positive
+
+
+class LimitsConfig(Section, frozen=True, kw_only=True):
+    """Bounds of both QPs."""
+
+    joint_speed_deg_s: Positive
+    joint_speed_slope_per_rad: Positive
+    thrust_rate_slope_per_n: Positive
+    torque_n_m: Positive
+    torque_rate_n_m_s: Positive
+
+
+class FailureConfig(Section, frozen=True, kw_only=True):
+    """A flight beyond these is lost."""
+
+    com_error_m: Positive
+    attitude_error_deg: Positive
+    joint_speed_rad_s: Positive
+
+
+class GroundConfig(Section, frozen=True, kw_only=True):
+    """Points of the robot whose height over the ground is watched."""
+
+    height_m: float = 0.0
+    frames: list[str] = []
+    points_m: list[Vector3] = []
+
+
+class TurbineConfig(Section, frozen=True, kw_only=True):
+    """Coefficients of the second-order thrust model and of its throttle controller."""
+
+    K_T: float
+    K_TT: float
+    K_D: float
+    K_DD: float
+    K_TD: float
+    B_U: float
+    B_T: float
+    B_D: float
+    B_UU: float
+    c: float
+    throttle_gain: Positive
+    max_throttle_percent: Positive
+
+
+class FlightConfig(Section, frozen=True, kw_only=True):
+    """Plant, jets, controller and reference generator."""
+
+    trajectory: str
+    step_s: Positive
+    duration_s: Positive
+    jet_model: Literal["integrator", "turbine"] = "integrator"
+    initial_state: InitialStateConfig
+    joint_groups: list[JointGroupConfig]
+    jets: JetsConfig
+    command_speeds: CommandSpeedsConfig
+    references: ReferencesConfig
+    gains: GainsConfig
+    weights: WeightsConfig
+    limits: LimitsConfig
+    failure: FailureConfig
+    ground: GroundConfig = GroundConfig()
+    turbine: TurbineConfig | None = None
+
+
+class WindowConfig(Section, frozen=True, kw_only=True):
+    """A command that acts at samples strictly between two times: signs of the command speeds."""
+
+    from_s: NonNegative
+    to_s: Positive
+    forward: Sign = 0.0
+    left: Sign = 0.0
+    up: Sign = 0.0
+    roll: Sign = 0.0
+    pitch: Sign = 0.0
+    yaw: Sign = 0.0
+
+
+class DisturbancesConfig(Section, frozen=True, kw_only=True):
+    """What the flight has and the controller does not know; deviations are drawn from the seed."""
+
+    wind_n: Vector3 = (0.0, 0.0, 0.0)
+    gust_deviation_n: tuple[NonNegative, NonNegative, NonNegative] = (0.0, 0.0, 0.0)
+    gust_time_s: Positive = 1.0
+    mass_scale: Positive = 1.0
+    mass_deviation: NonNegative = 0.0
+    thrust_deviation: NonNegative = 0.0
+    seed: Annotated[int, Meta(ge=0)] = 0
+
+
+class TrajectoryConfig(Section, frozen=True, kw_only=True):
+    """Piloted segments, hover outside of them; calm unless disturbed."""
+
+    windows: list[WindowConfig]
+    label: str = ""
+    disturbances: DisturbancesConfig = DisturbancesConfig()
+
+
+class ObjectivesConfig(Section, frozen=True, kw_only=True):
+    """Which objective family is minimised, and which of its members."""
+
+    family: Literal["rms", "script", "paper"] = "rms"
+    minimise: tuple[str, ...] = ("momentum", "joint_velocity", "thrust")
+
+
+class ConstraintsConfig(Section, frozen=True, kw_only=True):
+    """What a design must satisfy. Clearances need the section [interference]; None: reported only.
+
+    first_frequency_min_hz: of each part on its supports; None: not computed. buckling_factor_min: of each part, the
+    multiple of its load at which it buckles; None: not computed.
+    """
+
+    safety_factor_min: Positive = 10.0
+    flight_completed: bool = True
+    body_clearance_min_mm: float | None = None
+    plume_clearance_min_mm: float | None = None
+    first_frequency_min_hz: Positive | None = None
+    buckling_factor_min: Positive | None = None
+
+    @property
+    def part_minima(self) -> dict[str, float]:
+        """What every part must reach: name of the number in its document -> lower limit."""
+        limits = {
+            "safety_factor": self.safety_factor_min,
+            "first_frequency": self.first_frequency_min_hz,
+            "buckling_factor": self.buckling_factor_min,
+        }
+        return {name: limit for name, limit in limits.items() if limit is not None}
+
+
+class ValidationConfig(Section, frozen=True, kw_only=True):
+    """Trajectories that chosen designs are flown on afterwards."""
+
+    trajectories: list[str] = []
+
+
+class OptimizerConfig(Section, frozen=True, kw_only=True):
+    """Defaults of the search; the command line overrides them."""
+
+    algorithm: str = "nsga2"
+    population: Annotated[int, Meta(ge=2)] = 25
+    generations: Annotated[int, Meta(ge=1)] = 40
+    crossover_probability: Probability = 0.9
+    mutation_probability: Probability = 0.25
+    seed: int = 1
+
+
+class ExecutionConfig(Section, frozen=True, kw_only=True):
+    """Worker processes and their limits."""
+
+    workers: Annotated[int, Meta(ge=1)] = 2
+    time_limit_s: Positive = 120.0
+    memory_limit_mib: Annotated[int, Meta(ge=64)] = 2048
+
+
+class StudyConfig(Section, frozen=True, kw_only=True):
+    """The whole file."""
+
+    name: str
+    title: str = ""
+    description: str = ""
+    robot: RobotConfig
+    variables: dict[str, VariableConfig]
+    baseline: dict[str, float] = {}
+    materials: dict[str, MaterialConfig]
+    parts: list[PartConfig]
+    fem: FemConfig = FemConfig()
+    flight: FlightConfig
+    trajectories: dict[str, TrajectoryConfig]
+    objectives: ObjectivesConfig = ObjectivesConfig()
+    constraints: ConstraintsConfig = ConstraintsConfig()
+    interference: InterferenceSettings | None = None
+    validation: ValidationConfig = ValidationConfig()
+    optimizer: OptimizerConfig = OptimizerConfig()
+    execution: ExecutionConfig = ExecutionConfig()
+
+
+# Sections that decide the numbers of an evaluation; the rest (search, execution) does not enter the study's hash.
+DECIDING_SECTIONS = (
+    "robot", "variables", "materials", "parts", "fem", "flight", "trajectories", "objectives", "constraints",
+    "interference",
+)  # fmt: skip
+
+RawStudy = dict[str, Any]

@@ -1,0 +1,120 @@
+"""A study: checked configuration, design space, base robot and part classes; the entry to the whole chain."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from codesign.parts.part import Part
+from codesign.problem.design_space import Design, DesignSpace
+from codesign.robot.description import RobotDescription
+from codesign.study.config import RawStudy, StudyConfig
+from codesign.study.conversion import convert, replace_number
+
+if TYPE_CHECKING:
+    from codesign.parts.load_case import Confirmation
+    from codesign.problem.evaluation import Evaluation
+    from codesign.storage.cache import PartCache
+
+
+@dataclass(frozen=True)
+class Study:
+    """Everything that defines a study. Immutable; `load_study` makes and checks it.
+
+    source: the name or path it was loaded from (worker processes load it again from there).
+    raw: the parsed TOML, on which design variables with `sets` act. hash: of all that decides a result. code_hash: of
+    the engine and the parts' sources, which with a part's own values and settings decide that part's numbers.
+    """
+
+    source: str
+    path: Path
+    raw: RawStudy
+    config: StudyConfig
+    space: DesignSpace
+    part_classes: dict[str, type[Part]]
+    base_robot: RobotDescription
+    hash: str
+    code_hash: str
+
+    @property
+    def name(self) -> str:
+        """Short name."""
+        return self.config.name
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self.config.title or self.config.name
+
+    @property
+    def description(self) -> str:
+        """A paragraph for people."""
+        return self.config.description
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Names of the minimised objectives."""
+        return tuple(self.config.objectives.minimise)
+
+    @property
+    def optimizer(self) -> Any:
+        """Defaults of the search."""
+        return self.config.optimizer
+
+    @property
+    def execution(self) -> Any:
+        """Workers and limits."""
+        return self.config.execution
+
+    @property
+    def baseline(self) -> Design | None:
+        """The design that reports compare with, if the study names one."""
+        return self.space.design(self.config.baseline) if self.config.baseline else None
+
+    @property
+    def trajectories(self) -> tuple[str, ...]:
+        """Names of the trajectories."""
+        return tuple(self.config.trajectories)
+
+    def configured(self, design: Mapping[str, float]) -> StudyConfig:
+        """The configuration with the numbers that design variables set replaced."""
+        setting = {n: v for n, v in self.config.variables.items() if v.sets}
+        if not setting:
+            return self.config
+        raw = json.loads(json.dumps(self.raw))
+        for name, variable in setting.items():
+            for path in variable.sets:
+                replace_number(raw, path, design[name], self.path)
+        return convert(raw, self.path)
+
+    def build_parts(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Part]:
+        """Parts of a design by name."""
+        from codesign.chain.chain import build_parts
+
+        return build_parts(self, self.space.design(theta))
+
+    def build_robot(self, theta: Mapping[str, float] | Sequence[float]) -> str:
+        """URDF text of the robot with this design's parts."""
+        from codesign.chain.chain import build_robot
+
+        return build_robot(self, self.space.design(theta)).to_text()
+
+    def evaluate(
+        self,
+        theta: Mapping[str, float] | Sequence[float],
+        trajectory: str | None = None,
+        cache: PartCache | None = None,
+    ) -> Evaluation:
+        """One design through the whole chain; `trajectory`: a name of the study, default its own."""
+        from codesign.chain.chain import evaluate
+
+        return evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
+
+    def confirm(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Confirmation]:
+        """Parts of a design by name, as analysed and with full geometry on a fine mesh (some seconds a part)."""
+        from codesign.chain.chain import confirm_parts
+
+        return confirm_parts(self, self.space.design(theta))

@@ -1,0 +1,1 @@
+"""Three-dimensional view of a design in the browser."""

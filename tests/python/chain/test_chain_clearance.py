@@ -1,0 +1,57 @@
+"""Clearances as part of the chain: reported for every flown design, a constraint where the study says so."""
+
+import msgspec
+import pytest
+
+import codesign
+from codesign import dynamics
+from codesign.chain import chain as pipeline
+from codesign.chain.flight import flight_settings, joint_names
+
+
+@pytest.fixture(scope="module")
+def flown():
+    """Short rod and nearly flat bracket: turbines near the upper arms, chest plumes near the feet."""
+    study = codesign.load_study("ironcub")
+    design = study.space.design((1, 48, 88, 50))
+    config = study.configured(design)
+    robot = pipeline.build_robot(study, design)
+    model = dynamics.load_urdf(robot.to_text(), joints=joint_names(config.flight))
+    log = dynamics.simulate_flight(model, flight_settings(config.flight, config.trajectories["envelope"]))
+    return config, log, pipeline._clearances(config, pipeline.build_parts(study, design, config), robot, log)
+
+
+def test_a_flown_design_reports_its_nearest_pairs_and_plumes(flown):
+    _, _, found = flown
+    nearest = found["bodies"][0]
+    assert set(nearest["links"]) <= {"l_upper_arm", "r_upper_arm", "l_arm_jet_turbine", "r_arm_jet_turbine"}
+    assert nearest["clearance"] == found["body_clearance"] < -0.015
+    assert found["plumes"][0]["jet"].startswith("chest_")
+    assert found["plumes"][0]["link"].endswith(("ankle_2", "foot_rear"))
+    assert found["plume_clearance"] < -0.02
+    assert [pair["clearance"] for pair in found["bodies"]] == sorted(pair["clearance"] for pair in found["bodies"])
+
+
+def test_clearances_are_no_constraint_unless_the_study_says_so(flown):
+    config, log, found = flown
+    constraints, violations = pipeline._constraints(config, {}, log, found)
+    assert constraints["body_clearance"] == found["body_clearance"]
+    assert constraints["plume_clearance"] == found["plume_clearance"]
+    assert not any(violations.values())
+
+
+def test_a_clearance_below_the_studys_limit_is_a_violation_with_a_reason(flown):
+    config, log, found = flown
+    limits = msgspec.structs.replace(config.constraints, body_clearance_min_mm=2.0, plume_clearance_min_mm=-100.0)
+    strict = msgspec.structs.replace(config, constraints=limits)
+    _, violations = pipeline._constraints(strict, {}, log, found)
+    assert violations["body_clearance"] == pytest.approx((0.002 - found["body_clearance"]) / 0.01)
+    assert "plume_clearance" not in violations
+    assert "body clearance -20" in pipeline._reason(strict, {}, log, found)
+
+
+def test_a_study_without_the_section_measures_nothing(flown):
+    config, log, _ = flown
+    silent = msgspec.structs.replace(config, interference=None)
+    assert pipeline._clearances(silent, {}, None, log) == {}
+    assert "body_clearance" not in pipeline._constraints(silent, {}, log, {})[0]

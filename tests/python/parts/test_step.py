@@ -1,0 +1,146 @@
+"""STEP files: read back with OpenCASCADE and with gmsh; silence; nothing half-written."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.collections import Sequence_TDF_Label
+from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
+from OCP.Interface import Interface_Static
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopoDS import TopoDS
+from OCP.XCAFApp import XCAFApp_Application
+from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from codesign.geometry.brep import Brep, build_brep, explore
+from codesign.parts.component import Component
+from codesign.parts.part import Part
+from codesign.parts.step import write_step_assembly
+from codesign.studies.ironcub.bracket import JetpackBracket
+from codesign.studies.ironcub.forearm import ForearmJetSupport
+
+BRACKET, FOREARM = JetpackBracket(15, 42), ForearmJetSupport(80, 108)
+RIGHT_FOREARM = FOREARM.mirrored("z", "r_forearm_support")
+ANALYTIC = {Kind.GeomAbs_Plane, Kind.GeomAbs_Cylinder, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus}
+PARTS: list[Part] = [BRACKET, JetpackBracket(79, 100), JetpackBracket(37, 78), FOREARM, RIGHT_FOREARM]
+
+
+class StepFile:
+    """A STEP file read back, with the names in it."""
+
+    def __init__(self, path: Path) -> None:
+        self.document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
+        XCAFApp_Application.GetApplication_s().InitDocument(self.document)
+        reader = STEPCAFControl_Reader()
+        Interface_Static.SetCVal_s("read.stepcaf.subshapes.name", "On")
+        reader.SetNameMode(True)
+        reader.ReadFile(str(path))
+        reader.Transfer(self.document)
+        self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
+
+    def roots(self) -> list[TDF_Label]:
+        labels = Sequence_TDF_Label()
+        self.shapes.GetFreeShapes(labels)
+        return [labels.Value(k + 1) for k in range(labels.Length())]
+
+
+def name_of(label: TDF_Label) -> str:
+    name = TDataStd_Name()
+    return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
+
+
+def components_of(label: TDF_Label) -> list[TDF_Label]:
+    labels = Sequence_TDF_Label()
+    XCAFDoc_ShapeTool.GetComponents_s(label, labels)
+    return [labels.Value(k + 1) for k in range(labels.Length())]
+
+
+@pytest.mark.parametrize("part", PARTS, ids=repr)
+def test_part_read_back_is_a_valid_exact_named_solid(part: Part, tmp_path: Path) -> None:
+    part.write_step(tmp_path / "part.step")
+    file = StepFile(tmp_path / "part.step")
+    (label,) = file.roots()
+    assert name_of(label) == part.name
+    (solid,) = explore(XCAFDoc_ShapeTool.GetShape_s(label), TopAbs_ShapeEnum.TopAbs_SOLID)
+    assert BRepCheck_Analyzer(solid).IsValid()
+    faces = [TopoDS.Face(face) for face in explore(solid, TopAbs_ShapeEnum.TopAbs_FACE)]
+    assert {BRepAdaptor_Surface(face).GetType() for face in faces} <= ANALYTIC
+    assert 40 < len(faces) < 70
+    assert Brep(solid).volume == pytest.approx(part.mass_properties().volume * 1e9, rel=5e-6)
+    labels = Sequence_TDF_Label()
+    XCAFDoc_ShapeTool.GetSubShapes_s(label, labels)
+    names = Counter(name_of(labels.Value(k + 1)) for k in range(labels.Length()))
+    assert set(names) == set(part.faces)
+    assert names["seat"] == 1
+
+
+def test_named_faces_of_the_file_have_the_exact_area() -> None:
+    assert build_brep(BRACKET.shape()).area("seat") == pytest.approx(np.pi * (23**2 - 6 * 1.6**2), rel=1e-12)
+    assert build_brep(FOREARM.shape()).area("seat") == pytest.approx(FOREARM.seat_area * 1e6, rel=1e-9)
+
+
+@pytest.mark.parametrize(("schema", "words"), [("AP214", "AUTOMOTIVE_DESIGN"), ("AP242", "AP242_MANAGED_MODEL")])
+def test_schema_is_the_one_asked_for(schema: str, words: str, tmp_path: Path) -> None:
+    BRACKET.write_step(tmp_path / "part.step", schema=schema)
+    text = (tmp_path / "part.step").read_text()
+    assert words in text.partition("ENDSEC")[0]
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text
+    with pytest.raises(ValueError, match="schema = 'AP203'"):
+        BRACKET.write_step(tmp_path / "other.step", schema="AP203")
+    assert [file.name for file in tmp_path.iterdir()] == ["part.step"]
+
+
+def test_assembly_places_shared_parts(tmp_path: Path) -> None:
+    moved = np.eye(4)
+    moved[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    moved[:3, 3] = [0.1, -0.2, 0.3]
+    poses = {"l_bracket": np.eye(4), "r_bracket": moved, "l_forearm": moved, "r_forearm": np.linalg.inv(moved)}
+    parts = {"l_bracket": BRACKET, "r_bracket": BRACKET, "l_forearm": FOREARM, "r_forearm": RIGHT_FOREARM}
+    components = [Component(name, part, poses[name]) for name, part in parts.items()]
+    write_step_assembly(components, tmp_path / "assembly.step", name="interfaces")
+    text = (tmp_path / "assembly.step").read_text()
+    assert text.count("MANIFOLD_SOLID_BREP(") == 3  # the bracket is stored once
+    file = StepFile(tmp_path / "assembly.step")  # labels live as long as their document
+    (root,) = file.roots()
+    assert name_of(root) == "interfaces"
+    assert [name_of(label) for label in components_of(root)] == list(poses)
+    for label, name in zip(components_of(root), poses, strict=True):
+        placed = XCAFDoc_ShapeTool.GetLocation_s(label).Transformation()
+        read = np.array([[placed.Value(i, j) for j in range(1, 5)] for i in range(1, 4)])
+        read[:, 3] *= 1e-3
+        np.testing.assert_allclose(read, poses[name][:3], atol=1e-12)
+        (solid,) = explore(XCAFDoc_ShapeTool.GetShape_s(label), TopAbs_ShapeEnum.TopAbs_SOLID)
+        assert Brep(solid).volume == pytest.approx(parts[name].mass_properties().volume * 1e9, rel=5e-6)
+
+
+def test_a_second_reader_sees_the_same_solid(tmp_path: Path) -> None:
+    gmsh = pytest.importorskip("gmsh")
+    RIGHT_FOREARM.write_step(tmp_path / "part.step")
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        entities = gmsh.model.occ.importShapes(str(tmp_path / "part.step"))
+        gmsh.model.occ.synchronize()
+        assert [dimension for dimension, _ in entities] == [3]
+        volume = gmsh.model.occ.getMass(*entities[0])
+        kinds = {gmsh.model.getType(2, tag) for _, tag in gmsh.model.getEntities(2)}
+    finally:
+        gmsh.finalize()
+    assert volume == pytest.approx(RIGHT_FOREARM.mass_properties().volume * 1e9, rel=5e-6)
+    assert kinds <= {"Plane", "Cylinder", "Cone", "Torus", "Trimmed cylinder"}
+
+
+def test_writing_is_silent_and_a_failure_leaves_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    BRACKET.write_step(tmp_path / "part.step")
+    with pytest.raises(FileNotFoundError):
+        BRACKET.write_step(tmp_path / "missing" / "part.step")
+    assert capfd.readouterr() == ("", "")
+    assert [file.name for file in tmp_path.iterdir()] == ["part.step"]

@@ -1,0 +1,221 @@
+"""Robot descriptions: reading, refusing, editing by copy, writing."""
+
+import numpy as np
+import pytest
+
+from codesign.errors import UrdfError
+from codesign.robot.description import RobotDescription
+from codesign.robot.inertial import Inertial
+from codesign.transforms import pose
+
+INERTIAL = """<inertial><origin xyz="0 0 0.1" rpy="0 0 1.5707963267948966"/><mass value="2"/>
+<inertia ixx="0.03" ixy="0" ixz="0.001" iyy="0.04" iyz="0" izz="0.05"/></inertial>"""
+BOX = '<origin xyz="0 0 0.1"/><geometry><box size="0.1 0.1 0.2"/></geometry>'
+URDF = f"""<?xml version="1.0"?>
+<robot name="pair">
+  <!-- kept -->
+  <link name="base">{INERTIAL}<visual>{BOX}<material name="grey"/></visual><collision>{BOX}</collision></link>
+  <link name="arm">{INERTIAL}</link>
+  <link name="tool"/>
+  <joint name="turn" type="revolute">
+    <origin xyz="0.30000000000000004 0 0" rpy="0 0.1 0"/><parent link="base"/><child link="arm"/><axis xyz="0 0 2"/>
+    <limit lower="-1" upper="1" effort="5" velocity="5"/><dynamics damping="2.0"/><mimic joint="other" multiplier="2"/>
+  </joint>
+  <joint name="slide" type="prismatic">
+    <parent link="arm"/><child link="tool"/><axis xyz="1 0 0"/><limit lower="0" upper="1" effort="5" velocity="5"/>
+  </joint>
+  <gazebo reference="arm"><mu1>0.2</mu1></gazebo>
+  <sensor name="imu" type="imu"/>
+</robot>"""
+BOMB = """<?xml version="1.0"?><!DOCTYPE r [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>
+<robot name="&b;"/>"""
+
+
+@pytest.fixture
+def robot():
+    return RobotDescription.from_text(URDF)
+
+
+def test_reads_names_masses_and_frames(robot):
+    assert (robot.name, robot.root_link) == ("pair", "base")
+    assert robot.link_names == ("base", "arm", "tool")
+    assert robot.moving_joint_names == ("turn", "slide")
+    assert robot.total_mass == 4.0
+    assert robot.inertial("tool") is None
+    # the inertial frame is turned by 90° about z: xx and yy change places, xz becomes yz
+    expected = [[0.04, 0, 0], [0, 0.03, 0.001], [0, 0.001, 0.05]]
+    np.testing.assert_allclose(robot.inertial("arm").inertia, expected, atol=1e-17)
+    poses = robot.frame_poses({"turn": 0.5, "slide": 0.2})
+    tool = pose([0.3, 0, 0], [0, 0.1, 0]) @ pose(rpy=[0, 0, 0.5]) @ pose([0.2, 0, 0])
+    np.testing.assert_allclose(poses["tool"], tool, atol=1e-15)
+
+
+def test_writes_back_what_it_read(robot, tmp_path):
+    again = RobotDescription.load(robot.write(tmp_path / "a.urdf"))
+    assert again.to_text() == robot.to_text()
+    for kept in ("kept", "0.30000000000000004", "<mimic", "<gazebo", "<sensor", 'damping="2.0"'):
+        assert kept in again.to_text()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.urdf"]
+
+
+def test_an_inertial_is_replaced_whole(robot):
+    new = Inertial(1 / 3, [0.1, -0.2, 1e-17], [[0.3, 0.01, -0.02], [0.01, 0.4, 1 / 70], [-0.02, 1 / 70, 0.5]])
+    edited = RobotDescription.from_text(robot.replace_inertial("arm", new).to_text())
+    read = edited.inertial("arm")
+    assert read.mass == new.mass
+    np.testing.assert_array_equal(read.com, new.com)
+    np.testing.assert_array_equal(read.inertia, new.inertia)
+    np.testing.assert_array_equal(edited.link("arm").inertial.origin[:3, :3], np.eye(3))
+    assert robot.inertial("arm").mass == 2.0
+    assert edited.inertial("base").mass == 2.0
+
+
+def test_a_link_without_inertial_gets_one(robot):
+    assert robot.replace_inertial("tool", Inertial(0.1, np.zeros(3), np.eye(3))).inertial("tool").mass == 0.1
+
+
+@pytest.mark.parametrize(
+    "rpy", [[0.1, 0.2, 0.3], [0.3, np.pi / 2, -1], [1, -np.pi / 2 + 1e-9, 2], [np.pi, 1e-9, -np.pi]]
+)
+def test_a_joint_origin_survives_the_text_at_every_orientation(robot, rpy):
+    T = pose([0.1, 1 / 3, -2e-20], rpy)
+    read = RobotDescription.from_text(robot.set_joint_origin("slide", T).to_text()).joint_origin("slide")
+    np.testing.assert_array_equal(read[:3, 3], T[:3, 3])
+    np.testing.assert_allclose(read, T, rtol=0, atol=5e-16)
+
+
+def test_a_mesh_replaces_all_shapes_and_keeps_the_colour(robot):
+    link = robot.set_mesh("base", "package://pair/base.stl", pose([0, 0, 1]), 0.001).link("base")
+    assert len(link.visuals) == len(link.collisions) == 1
+    assert link.visuals[0].geometry.mesh.filename == "package://pair/base.stl"
+    assert link.visuals[0].material.name == "grey"
+    assert link.collisions[0].origin[2, 3] == 1.0
+
+
+@pytest.mark.parametrize("what", ["inertial", "joint", "mesh"])
+def test_edits_of_what_is_not_there_are_refused(robot, what):
+    edit = {
+        "inertial": lambda: robot.replace_inertial("nose", Inertial(1, np.zeros(3), np.eye(3))),
+        "joint": lambda: robot.set_joint_origin("nose", np.eye(4)),
+        "mesh": lambda: robot.set_mesh("nose", "a.stl", np.eye(4)),
+    }[what]
+    with pytest.raises(UrdfError, match="nose"):
+        edit()
+
+
+@pytest.mark.parametrize("T", [np.diag([1, 1, 1, 2]), np.diag([1, 1, -1, 1]), np.full((4, 4), np.nan), np.eye(3)])
+def test_a_joint_origin_that_is_no_rigid_motion_is_refused(robot, T):
+    with pytest.raises(ValueError, match="slide"):
+        robot.set_joint_origin("slide", T)
+
+
+@pytest.mark.parametrize(
+    ("mass", "inertia", "message"),
+    [
+        (-1.0, np.eye(3), "negative mass"),
+        (np.nan, np.eye(3), "not finite"),
+        (1.0, np.diag([1, 1, -1e-9]), "not positive definite"),
+        (1.0, np.diag([1, 1, 0]), "not positive definite"),
+        (1.0, np.diag([1, 1, 2.1]), "exceeds the other two"),
+        (1.0, np.eye(3) + np.eye(3, k=1) * 0.1, "not symmetric"),
+        (0.0, np.eye(3), "inertia without mass"),
+    ],
+)
+def test_inertials_that_no_body_has_are_refused_with_the_links_name(robot, mass, inertia, message):
+    with pytest.raises(UrdfError, match=f"link arm: .*{message}"):
+        robot.replace_inertial("arm", Inertial(mass, np.zeros(3), inertia))
+
+
+def test_a_plate_is_physical(robot):
+    robot.replace_inertial("arm", Inertial(1.0, np.zeros(3), np.diag([1, 1, 2])))
+
+
+def test_non_physical_inertia_is_refused_on_reading_unless_asked_for():
+    text = URDF.replace('izz="0.05"', 'izz="-0.05"', 1)
+    with pytest.raises(UrdfError, match="link base: inertia tensor is not positive definite"):
+        RobotDescription.from_text(text)
+    assert RobotDescription.from_text(text, as_published=True).total_mass == 4.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("</robot>", "", "not well-formed"),
+        ('<robot name="pair"', '<bobot name="pair"', "not well-formed"),
+        ('<robot name="pair">', "<robot>", "no name"),
+        ('<link name="tool"/>', '<link name="arm"/>', "link arm is defined twice"),
+        ('<link name="tool"/>', "<link/>", "<link> has no name"),
+        ('name="slide"', 'name="turn"', "joint turn is defined twice"),
+        ('<child link="tool"/>', '<child link="tol"/>', "joint slide: child link 'tol' does not exist"),
+        ('<child link="tool"/>', '<child link="base"/>', "more than one root|no root|cycle|form"),
+        ('<child link="tool"/>', '<child link="arm"/>', "arm has another parent"),
+        ('<parent link="arm"/>', "", "joint slide: no <parent>"),
+        ('type="prismatic"', 'type="sliding"', "joint slide: type 'sliding'"),
+        ('type="prismatic"', "", "joint slide: type None"),
+        ('<mass value="2"/>', "", "link base: <inertial> has no <mass>"),
+        ('<mass value="2"/>', "<mass/>", "link base: <mass> has no value"),
+        ('<mass value="2"/>', '<mass value="2,5"/>', "link base: <mass> value='2,5'"),
+        ('<mass value="2"/>', '<mass value="nan"/>', "'nan' is not a finite number"),
+        ('<mass value="2"/>', '<mass value="1e999"/>', "'1e999' is not a finite number"),
+        ('<mass value="2"/>', '<mass value="1_0"/>', "'1_0' is not a finite number"),
+        ('<mass value="2"/>', '<mass value="-2"/>', "link base: negative mass"),
+        ('ixy="0" ', "", "link base: <inertia> has no ixy"),
+        ('xyz="0 0 0.1"', 'xyz="0 0.1"', "2 numbers instead of 3"),
+        ('size="0.1 0.1 0.2"', 'size="0.1 0 0.2"', "must be greater than zero"),
+        ("<box", "<cone", "link base: a <visual> needs one box"),
+        ('<axis xyz="0 0 2"/>', '<axis xyz="0 0 0"/>', "joint turn: axis of length zero"),
+        ('lower="-1" upper="1"', 'lower="1" upper="-1"', "joint turn: lower limit 1 above upper limit -1"),
+        ('<limit lower="0" upper="1" effort="5" velocity="5"/>', "", "joint slide: a prismatic joint needs a <limit>"),
+        ('effort="5"', "", "effort"),
+    ],
+)
+def test_unusable_text_is_refused_with_a_reason(old, new, message):
+    assert old in URDF
+    with pytest.raises(UrdfError, match=message):
+        RobotDescription.from_text(URDF.replace(old, new, 1))
+
+
+def test_a_robot_whose_links_form_a_ring_is_refused():
+    text = URDF.replace(
+        "<gazebo", '<joint name="back" type="fixed"><parent link="tool"/><child link="base"/></joint><gazebo'
+    )
+    with pytest.raises(UrdfError, match="cycle"):
+        RobotDescription.from_text(text)
+
+
+def test_two_robots_in_one_file_are_refused():
+    with pytest.raises(UrdfError, match="more than one root link: tool, island"):
+        RobotDescription.from_text('<robot name="r"><link name="tool"/><link name="island"/></robot>')
+
+
+@pytest.mark.parametrize("text", ["", "robot", "<robot name='r'/>", b"\xff\xfe\x00", b"\x00" * 10, "<html/>"])
+def test_what_is_not_a_robot_is_refused(text):
+    with pytest.raises(UrdfError):
+        RobotDescription.from_text(text)
+
+
+def test_entity_bombs_and_external_entities_are_refused_before_they_expand():
+    with pytest.raises(UrdfError, match="document type"):
+        RobotDescription.from_text(BOMB)
+    with pytest.raises(UrdfError, match="document type"):
+        RobotDescription.from_text('<!DOCTYPE r SYSTEM "file:///etc/passwd"><robot name="r"><link name="a"/></robot>')
+
+
+def test_huge_text_is_refused():
+    with pytest.raises(UrdfError, match="bytes are more than"):
+        RobotDescription.from_text(b" " * (32 * 2**20 + 1))
+
+
+def test_a_missing_file_is_refused_with_its_name(tmp_path):
+    with pytest.raises(UrdfError, match=r"none\.urdf"):
+        RobotDescription.load(tmp_path / "none.urdf")
+
+
+def test_a_failed_write_leaves_the_old_file(robot, tmp_path, monkeypatch):
+    target = tmp_path / "robot.urdf"
+    target.write_text("old")
+    monkeypatch.setattr("pathlib.Path.replace", lambda *_: (_ for _ in ()).throw(OSError("full")))
+    with pytest.raises(OSError, match="full"):
+        robot.write(target)
+    assert target.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [target]

@@ -1,0 +1,188 @@
+"""Searches as a whole: determinism, duplicates, stopping, what runs hold."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+
+from codesign.problem.evaluation import Evaluation
+from codesign.problem.pareto import non_dominated
+from codesign.search.base import RandomSearch, start_points, sub_grid
+from codesign.search.optimization import evaluate_designs, optimize, sweep
+from codesign.search.pymoo_search import ALGORITHMS, Evolution, EvolutionSettings
+from codesign.storage.runs import Run
+from fake_study import FakeStudy, study
+
+
+def identities(run: Run) -> list[dict]:
+    return [record.identity() for record in run.search_records]
+
+
+def tell_all(search, space: FakeStudy, count: int, batch: int) -> list[tuple[int, ...]]:
+    """Runs a search without workers or store."""
+    asked: list[tuple[int, ...]] = []
+    while len(asked) < count and (grids := search.ask(batch)):
+        asked += grids
+        search.tell(grids, [space.evaluate(space.space.from_indices(grid)) for grid in grids])
+    return asked
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("batch", [12, 1])
+def test_evolution_is_deterministic_and_never_asks_twice(algorithm: str, batch: int) -> None:
+    if algorithm.startswith("age"):
+        pytest.importorskip("numba")
+    fake = study()
+    settings = EvolutionSettings(algorithm, population=12, seed=3)
+    runs = []
+    for _ in range(2):
+        search = Evolution(fake.space, fake.objectives, settings, start_points(fake.space, 12, "sobol", 3))
+        runs.append(tell_all(search, fake, 120, batch))
+        np.random.seed(len(runs))  # noqa: NPY002 - the global generator must not matter
+        random.seed(len(runs))
+    assert runs[0] == runs[1]
+    assert len(set(runs[0])) == len(runs[0]) >= 120
+    assert len(search.population()) == 12
+
+
+def test_another_seed_gives_another_search() -> None:
+    fake = study()
+    starts = {tuple(start_points(fake.space, 8, "sobol", seed)) for seed in range(5)}
+    assert len(starts) == 5
+    plain = {tuple(start_points(fake.space, 8, "sobol-plain", seed)) for seed in range(5)}
+    assert len(plain) == 1
+
+
+def test_small_grid_is_evaluated_whole_and_once() -> None:
+    fake = study(levels=[5, 4, 3])
+    start = start_points(fake.space, 10, "sobol", 1)
+    search = Evolution(fake.space, fake.objectives, EvolutionSettings(population=10), start)
+    asked = tell_all(search, fake, 1000, 10)
+    assert len(asked) == len(set(asked)) == 60
+
+
+def test_start_points_are_distinct_and_cover_tiny_grids() -> None:
+    fake = study(levels=[2, 2, 1])
+    assert sorted(start_points(fake.space, 25, "sobol", 1)) == sub_grid(fake.space, (2, 2, 1))
+
+
+def test_random_search_covers_the_grid_without_repetition() -> None:
+    fake = study(levels=[9, 7, 5])
+    asked = RandomSearch(fake.space, 4).ask(10_000)
+    assert len(asked) == len(set(asked)) == 9 * 7 * 5
+
+
+def test_failed_and_infeasible_designs_do_not_steer_by_numbers() -> None:
+    """The search is the same whatever objectives infeasible designs carry, and goes on when all designs fail."""
+    fake = study()
+
+    def run(objective: float) -> list[tuple[int, ...]]:
+        settings = EvolutionSettings(population=10)
+        search = Evolution(fake.space, fake.objectives, settings, start_points(fake.space, 10, "sobol", 1))
+        asked = []
+        for _ in range(8):
+            grids = search.ask(10)
+            asked += grids
+            results = []
+            for grid in grids:
+                if sum(grid) % 3 == 0:
+                    values = dict.fromkeys(fake.objectives, objective)
+                    results.append(Evaluation({}, "infeasible", objectives=values, violations={"g": 0.1 * sum(grid)}))
+                elif sum(grid) % 3 == 1:
+                    results.append(Evaluation.failure({}, "broken"))
+                else:
+                    results.append(fake.evaluate(fake.space.from_indices(grid)))
+            search.tell(grids, results)
+        return asked
+
+    assert run(-1e9) == run(1e9)
+    search = Evolution(fake.space, fake.objectives, EvolutionSettings(population=10), sub_grid(fake.space, (2, 5, 1)))
+    for _ in range(3):
+        grids = search.ask(10)
+        assert len(grids) == 10
+        search.tell(grids, [Evaluation.failure({}, "broken")] * 10)
+    assert search.population() == []
+
+
+def test_one_worker_equals_four_in_any_finishing_order(tmp_path) -> None:
+    one = optimize(study(hash="h"), out=tmp_path / "one", workers=1, cache=None, generations=4)
+    four = optimize(study(hash="h", jitter=0.02), out=tmp_path / "four", workers=4, cache=None, generations=4)
+    assert identities(one) == identities(four)
+    assert one.generations == four.generations
+    assert len({record.worker for record in four.records}) == 4
+
+
+def test_steady_state_is_as_deterministic_as_generations(tmp_path) -> None:
+    settings = {"cache": None, "steady": True, "evaluations": 60, "lag": 5}
+    one = optimize(study(hash="h"), out=tmp_path / "one", workers=1, **settings)
+    four = optimize(study(hash="h", jitter=0.02), out=tmp_path / "four", workers=4, **settings)
+    generational = optimize(study(hash="h"), out=tmp_path / "other", workers=2, cache=None, evaluations=60)
+    assert identities(one) == identities(four) != identities(generational)
+
+
+def test_front_is_what_brute_force_says(tmp_path) -> None:
+    fake = study(levels=[8, 6, 3])
+    run = sweep(fake, (8, 6, 3), out=tmp_path / "run", cache=None)
+    values = [[e.objectives[name] for name in fake.objectives] for e in run.evaluations if e.status == "feasible"]
+    best = [v for v in values if not any(all(np.less_equal(w, v)) and any(np.less(w, v)) for w in values)]
+    assert len(run.evaluations) == 8 * 6 * 3
+    assert sorted(best) == sorted([r.evaluation.objectives[n] for n in fake.objectives] for r in run.front)
+
+
+@pytest.mark.parametrize("steady", [False, True])
+def test_cache_makes_the_second_run_identical_without_evaluations(tmp_path, steady: bool) -> None:
+    fake = study(log=str(tmp_path / "log"))
+    first = optimize(fake, out=tmp_path / "a", cache=tmp_path / "cache.sqlite", steady=steady)
+    lines = (tmp_path / "log").read_text().splitlines()
+    second = optimize(fake, out=tmp_path / "b", cache=tmp_path / "cache.sqlite", steady=steady)
+    assert (tmp_path / "log").read_text().splitlines() == lines
+    assert len(lines) == len(set(lines)) == 40
+    assert identities(first) == identities(second)
+    assert all(record.cached for record in second.records)
+
+
+def test_given_designs_open_the_start_population(tmp_path) -> None:
+    original = {"a": 3.0, "b": 2.5, "c": 1.0}
+    run = optimize(study(), out=tmp_path / "run", cache=None, generations=1, first=[original])
+    assert run.evaluations[0].design == original
+    assert len(run.evaluations) == 8
+
+
+def test_stops_when_the_hypervolume_stalls(tmp_path) -> None:
+    run = optimize(study(levels=[4, 4, 4]), out=tmp_path / "run", cache=None, generations=8, stall_generations=2)
+    assert len(run.evaluations) < 64
+    assert "stalled" in run.sessions[-1]["outcome"]
+
+
+def test_stops_after_wall_time(tmp_path) -> None:
+    run = optimize(study(seconds=0.05), out=tmp_path / "run", cache=None, generations=999, wall_time=1.0)
+    assert 8 <= len(run.evaluations) < 400
+    assert run.finished
+
+
+def test_evaluates_listed_designs(tmp_path) -> None:
+    designs = [{"a": 1.0, "b": 0.5, "c": 0.0}, {"a": 2.0, "b": 0.5, "c": 0.0}]
+    run = evaluate_designs(study(), designs, out=tmp_path / "run", cache=None)
+    assert [e.design for e in run.evaluations] == designs
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"algorithm": "nsga"}, "algorithm"),
+        ({"start": "best"}, "start"),
+        ({"population": 1}, "population"),
+        ({"lag": -1}, "lag"),
+    ],
+)
+def test_wrong_settings_are_refused_before_anything_is_written(tmp_path, settings, message) -> None:
+    with pytest.raises(ValueError, match=message):
+        optimize(study(), out=tmp_path / "run", cache=None, **settings)
+    assert not (tmp_path / "run").exists()
+
+
+def test_non_dominated_keeps_equal_rows() -> None:
+    values = np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]])
+    assert non_dominated(values).tolist() == [True, True, True, False, True]
+    assert math.isfinite(values.sum())
