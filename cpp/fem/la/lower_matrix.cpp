@@ -3,6 +3,11 @@
 #include <cstddef>
 
 namespace codesign::fem {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
 
 Eigen::VectorXd multiply(const LowerMatrix& a, const Eigen::VectorXd& x) {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(x.size());
