@@ -327,7 +327,8 @@ def stress(
     SEL is near:x,y,z (the smooth face nearest to a point), box:x0,y0,z0,x1,y1,z1 (all faces inside) or
     normal:nx,ny,nz[:degrees] (faces that look there), in the file's units.
     """
-    from codesign.cli.stress import find_material, stress_document
+    from codesign.cli.stress import stress_document
+    from codesign.cli.stress_options import find_material
 
     document = stress_document(
         part, scale, find_material(material), fix, load, edge_length, vtu, png, exclusion, smooth

@@ -9,7 +9,8 @@ import meshio
 import numpy as np
 import pytest
 
-from codesign.cli.stress import MATERIALS, StressInputError, find_material, parse_load, stress_document
+from codesign.cli.stress import stress_document
+from codesign.cli.stress_options import MATERIALS, StressInputError, find_material, parse_load
 from codesign.errors import MeshError
 
 CORNERS = np.array(list(product((0.0, 100.0), (0.0, 10.0), (0.0, 10.0))))

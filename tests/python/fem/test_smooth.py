@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from codesign import fem
-from codesign.cli.stress import MATERIALS, stress_document
+from codesign.cli.stress import stress_document
+from codesign.cli.stress_options import MATERIALS
 from codesign.errors import MeshError
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport

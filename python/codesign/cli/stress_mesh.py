@@ -1,0 +1,86 @@
+"""Mesh of `codesign stress`: edge length, curved facets, the places as faces of the mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from codesign import fem
+from codesign.errors import MeshError
+from codesign.fem.selections import Place, label_surface
+
+ELEMENTS_WANTED = 30_000  # of the default edge length, at most
+COARSE = 20_000  # triangles: a surface with more is no coarse tessellation
+FACET_DISTANCE = 0.06  # of sides of elements to the surface, relative to their size, as in fem.tetrahedralize
+WALLS = 2.5  # elements across the mean wall, of the default edge length
+
+
+def default_edge_length(surface: fem.SurfaceMesh) -> float:
+    """Edge length [m] from the mean wall thickness, 2 · volume / area, limited by the number of elements."""
+    volume = fem.mass_properties(surface, 1.0).volume
+    a, b, c = (surface.points[surface.triangles[:, k]] for k in range(3))
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return max(2.0 * volume / area / WALLS, math.cbrt(8.0 * volume / ELEMENTS_WANTED))
+
+
+def literal_facets(surface: fem.SurfaceMesh, size: float) -> dict[str, Any] | None:
+    """How far a surface that looks like a coarse tessellation is from a smooth one; None if that does not matter.
+
+    It matters beyond the distance that sides of elements of `size` [m] keep to the surface anyway. A fine tessellation
+    (more than COARSE triangles) is not looked at.
+    """
+    if len(surface.triangles) > COARSE:
+        return None
+    report = fem.smooth_surface(surface)[1]
+    return _smoothing(report) if report.max_distance > FACET_DISTANCE * size else None
+
+
+def _smoothing(report: fem.SmoothReport) -> dict[str, Any]:
+    return {
+        "facets": report.facets,
+        "max_distance": report.max_distance,
+        "volume_change": report.volume_change,
+        "left": report.left,
+        "reason": report.reason,
+    }
+
+
+def mesh_places(
+    surface: fem.SurfaceMesh, places: Sequence[Place], size: float, smooth: bool
+) -> tuple[fem.TetMesh, list[fem.Selection], dict[str, Any] | None]:
+    """The mesh, the places on it, and the smoothing; the facets themselves if their smooth surface cannot be meshed.
+
+    Places are looked up on the facets of the file; the pieces of a facet belong to its place.
+    """
+    labelled, selections = label_surface(surface, places)
+    if not smooth:
+        return *_mesh_either(labelled, lambda: surface, selections, places, size), None
+    curved, report = fem.smooth_surface(labelled)
+    try:
+        return *_mesh_either(curved, lambda: fem.smooth_surface(surface)[0], selections, places, size), _smoothing(
+            report
+        )
+    except MeshError as error:
+        reason = f"the curved surface cannot be meshed ({error}): facets taken literally"
+        unused = {"facets": 0, "max_distance": 0.0, "volume_change": 0.0, "left": report.facets, "reason": reason}
+        return *_mesh_either(labelled, lambda: surface, selections, places, size), unused
+
+
+def _mesh_either(
+    labelled: fem.SurfaceMesh,
+    plain: Callable[[], fem.SurfaceMesh],
+    selections: list[fem.Selection],
+    places: Sequence[Place],
+    size: float,
+) -> tuple[fem.TetMesh, list[fem.Selection]]:
+    """The mesh and the places on it, with exact borders unless they are too ragged for the edge length.
+
+    plain: makes the surface without the places' borders, which is rarely needed.
+    """
+    try:
+        return fem.tetrahedralize(labelled, size), selections
+    except MeshError:
+        return fem.tetrahedralize(plain(), size), [place.on_mesh() for place in places]

@@ -1,0 +1,91 @@
+"""Options of `codesign stress`: selections, loads and materials from text."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from codesign import fem
+from codesign.errors import CodesignError
+from codesign.fem.selections import Box, Facing, Near, Place
+from codesign.units import GIGA, MEGA
+
+# Typical catalogue values; ergal (aluminium 7075-T6) as in the shipped study.
+MATERIALS = {
+    "ergal": fem.Material("ergal", 71.7 * GIGA, 0.3, 2810.0, 462.0 * MEGA),
+    "aluminium_6061_t6": fem.Material("aluminium_6061_t6", 68.9 * GIGA, 0.33, 2700.0, 276.0 * MEGA),
+    "steel_s235": fem.Material("steel_s235", 210.0 * GIGA, 0.3, 7850.0, 235.0 * MEGA),
+    "titanium_ti6al4v": fem.Material("titanium_ti6al4v", 113.8 * GIGA, 0.342, 4430.0, 880.0 * MEGA),
+}
+
+
+class StressInputError(CodesignError, ValueError):
+    """An option of `codesign stress` that cannot be used; the message names it and says why."""
+
+
+def parse_selection(text: str, scale: float) -> Place:
+    """`near:x,y,z`, `box:x0,y0,z0,x1,y1,z1` or `normal:nx,ny,nz[:degrees]`; coordinates in units of `scale` metres.
+
+    Raises: StressInputError.
+    """
+    kind, _, rest = text.strip().partition(":")
+    if kind == "near":
+        x, y, z = _numbers(rest, 3, text)
+        return Near((x * scale, y * scale, z * scale))
+    if kind == "box":
+        corners = np.array(_numbers(rest, 6, text)).reshape(2, 3) * scale
+        return Box(tuple(corners.min(axis=0)), tuple(corners.max(axis=0)))
+    if kind == "normal":
+        direction, _, angle = rest.partition(":")
+        x, y, z = _numbers(direction, 3, text)
+        if not (x or y or z):
+            raise StressInputError(f"selection {text!r}: the direction is zero")
+        return Facing((x, y, z), _numbers(angle, 1, text)[0] if angle else 1.0)
+    raise StressInputError(
+        f"selection {text!r}: expected near:x,y,z, box:x0,y0,z0,x1,y1,z1 or normal:nx,ny,nz[:degrees]"
+    )
+
+
+def parse_load(text: str, scale: float) -> tuple[Place, tuple[float, ...]]:
+    """`SEL: fx fy fz`, the total force in newton, spread over the selection's area.
+
+    Raises: StressInputError.
+    """
+    where, colon, force = text.rpartition(":")
+    if not colon:
+        raise StressInputError(f"load {text!r}: expected 'SELECTION: fx fy fz'")
+    values = _numbers(",".join(force.replace(",", " ").split()), 3, text)
+    if not any(values):
+        raise StressInputError(f"load {text!r}: the force is zero")
+    return parse_selection(where, scale), values
+
+
+def find_material(text: str) -> fem.Material:
+    """A name of MATERIALS, or `E_GPa,nu,yield_MPa[,kg/m3]`.
+
+    Raises: StressInputError.
+    """
+    if text in MATERIALS:
+        return MATERIALS[text]
+    if "," not in text:
+        raise StressInputError(
+            f"material {text!r}: there are {', '.join(MATERIALS)}; or give E_GPa,nu,yield_MPa[,density_kg_m3]"
+        )
+    modulus, ratio, strength, density = (*_numbers(text, 4 if text.count(",") == 3 else 3, text), 0.0)[:4]
+    if strength <= 0.0:
+        raise StressInputError(f"material {text!r}: the yield strength must be positive")
+    try:
+        return fem.Material("custom", modulus * GIGA, ratio, density, strength * MEGA)
+    except ValueError as error:
+        raise StressInputError(f"material {text!r}: {error}") from None
+
+
+def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != count or not all(math.isfinite(value) for value in values):
+        raise StressInputError(f"{whole!r}: expected {count} numbers, found {text.strip()!r}")
+    return values
