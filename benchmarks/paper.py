@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codesign import dynamics as dyn
-from codesign.chain.chain import objective_families
+from codesign.chain.documents import objective_families
 from codesign.chain.flight import flight_settings, joint_names
 from codesign.followup.validation import validate
 from codesign.problem.evaluation import Evaluation

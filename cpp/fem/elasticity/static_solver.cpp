@@ -11,7 +11,7 @@
 #include "fem/elasticity/stiffness.hpp"
 #include "fem/la/cholesky.hpp"
 #include "fem/la/ordering.hpp"
-#include "fem/la/two_level.hpp"
+#include "fem/elasticity/two_level.hpp"
 #include "fem/stress/recovery.hpp"
 
 namespace codesign::fem {

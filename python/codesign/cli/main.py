@@ -93,7 +93,7 @@ def fly(
     as_json: JsonOption = False,
 ) -> int:
     """Flies any URDF that has the study's joints and jets."""
-    from codesign.chain.chain import fly_robot
+    from codesign.chain.fly import fly_robot
     from codesign.study import load_study
 
     result = fly_robot(load_study(study), robot, trajectory=trajectory, jets=jets, as_published=as_published)

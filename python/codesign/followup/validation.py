@@ -170,7 +170,7 @@ def _disturbed(
     size: Disturbance,
 ) -> Flight:
     from codesign import dynamics as dyn
-    from codesign.chain.chain import flight_document, objective_families
+    from codesign.chain.documents import flight_document, objective_families
     from codesign.chain.flight import flight_settings
 
     config = study.configured(study.space.design(design))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -13,94 +12,10 @@ import numpy as np
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import non_dominated
+from codesign.problem.quantities import Quantity, words
 from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee
-from codesign.units import MILLIMETRE
 
 MOST = 0.93  # of the feasible designs are in view
-
-
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    """A number shown to people: its key in an Evaluation, its name in words, its unit, and what it means.
-
-    factor: from the SI value that is stored to `unit`.
-    """
-
-    key: str
-    label: str
-    unit: str = ""
-    meaning: str = ""
-    factor: float = 1.0
-
-    @property
-    def title(self) -> str:
-        """Label with unit, for axes and column heads."""
-        return f"{self.label} ({self.unit})" if self.unit else self.label
-
-
-OBJECTIVES = {
-    "momentum": Quantity(
-        "momentum",
-        "Momentum error",
-        "kg·m/s",
-        "Root mean square over the flight of the difference between the robot's linear and angular momentum and the "
-        "wanted one.",
-    ),
-    "joint_velocity": Quantity(
-        "joint_velocity",
-        "Joint velocity error",
-        "rad/s",
-        "Root mean square of the difference between commanded and reached joint velocities: torso counted twice, plus "
-        "both arms.",
-    ),
-    "thrust": Quantity(
-        "thrust", "Thrust", "N", "Sum of the jet thrusts, averaged over the flight: what flying costs in fuel."
-    ),
-}
-FAMILY_UNITS = {
-    "rms": {},
-    "script": {"momentum": "", "joint_velocity": "", "thrust": "N"},
-    "paper": {"momentum": "", "joint_velocity": "", "thrust": "N"},
-}
-CONSTRAINTS = {
-    "safety_factor": Quantity(
-        "safety_factor", "Safety factor", "", "Yield strength over peak stress of the weakest part."
-    ),
-    "first_frequency": Quantity(
-        "first_frequency", "First natural frequency", "Hz", "Lowest frequency of a part on its supports."
-    ),
-    "buckling_factor": Quantity(
-        "buckling_factor", "Buckling factor", "", "Multiple of its load at which the first part buckles."
-    ),
-    "qp_failures": Quantity("qp_failures", "Controller failures", "", "Control steps without a solution."),
-    "body_clearance": Quantity(
-        "body_clearance", "Body clearance", "mm", "Smallest gap beside the parts; below 0 they overlap.", 1 / MILLIMETRE
-    ),
-    "plume_clearance": Quantity(
-        "plume_clearance", "Plume clearance", "mm", "Smallest gap beside the jets; below 0 they hit.", 1 / MILLIMETRE
-    ),
-}
-
-
-def words(key: str) -> str:
-    """A key as words: `jetpack_bracket` -> `Jetpack bracket`."""
-    text = key.replace("_", " ").strip()
-    return text[:1].upper() + text[1:]
-
-
-def objective_quantities(keys: Sequence[str], family: str = "rms") -> tuple[Quantity, ...]:
-    """Objectives in words; unknown keys are shown as they are written."""
-    found = []
-    for key in keys:
-        known = OBJECTIVES.get(key, Quantity(key, words(key)))
-        unit = FAMILY_UNITS.get(family, {}).get(key, known.unit)
-        found.append(Quantity(key, known.label, unit, known.meaning if family == "rms" or key == "thrust" else ""))
-    return tuple(found)
-
-
-def constraint_quantity(key: str) -> Quantity:
-    """A constraint in words."""
-    return CONSTRAINTS.get(key, Quantity(key, words(key)))
 
 
 @dataclass(frozen=True, slots=True)

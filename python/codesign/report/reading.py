@@ -6,12 +6,13 @@ import logging
 from pathlib import Path
 from typing import Any
 
+from codesign.chain.judge import limits
 from codesign.errors import CodesignError
 from codesign.problem.evaluation import Evaluation
-from codesign.report.data import Entry, ReportData, objective_quantities, words
+from codesign.problem.quantities import quantity, words
+from codesign.report.data import Entry, ReportData
 from codesign.report.details import load_details
 from codesign.storage.runs import Run, load_run
-from codesign.units import MILLIMETRE
 
 logger = logging.getLogger(__name__)
 
@@ -33,7 +34,7 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
         title=study.title if study is not None else words(run.study["name"]),
         description=" ".join(study.description.split()) if study is not None else "",
         variables=run.space.variables,
-        objectives=objective_quantities(run.objectives, family),
+        objectives=tuple(quantity(key, family) for key in run.objectives),
         entries=tuple(
             Entry(int(r.number if r.number is not None else k), r.evaluation, r.generation)
             for k, r in enumerate(run.search_records)
@@ -51,11 +52,12 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
 
 def _limits(study: Any) -> dict[str, tuple[str, float]]:
     """What the study demands of its constraints, SI units."""
-    asked = study.config.constraints
-    gaps = {"body_clearance": asked.body_clearance_min_mm, "plume_clearance": asked.plume_clearance_min_mm}
-    lowest = asked.part_minima | {name: gap * MILLIMETRE for name, gap in gaps.items() if gap is not None}
-    limits = {name: (">=", limit) for name, limit in lowest.items()}
-    return limits | ({"qp_failures": ("<=", 0.0)} if asked.flight_completed else {})
+    bounds = {}
+    for limit in limits(study.config):
+        sign, bound = (">=", limit.least) if limit.least is not None else ("<=", limit.most)
+        if bound is not None:
+            bounds[limit.quantity.key] = (sign, bound)
+    return bounds | ({"qp_failures": ("<=", 0.0)} if study.config.constraints.flight_completed else {})
 
 
 def study_of(directory: Path) -> Any:

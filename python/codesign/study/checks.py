@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from codesign.errors import StudyError
 from codesign.parts.part import Part, parameter_units
+from codesign.problem.quantities import QUANTITIES
 from codesign.study.config import StudyConfig
+
+MOST_OBJECTIVES = 6
 
 
 def check_study(config: StudyConfig, part_classes: Mapping[str, type[Part]], path: Path) -> None:
@@ -45,6 +49,7 @@ def check_study(config: StudyConfig, part_classes: Mapping[str, type[Part]], pat
         if name not in used and not variable.sets:
             refuse(f"variables.{name}", "no part takes it and it sets nothing")
     _check_flight(config, refuse)
+    _check_numbers(config, refuse)
 
 
 def _check_flight(config: StudyConfig, refuse: Any) -> None:
@@ -71,6 +76,42 @@ def _check_flight(config: StudyConfig, refuse: Any) -> None:
                 refuse(f"trajectories.{name}.windows", f"to_s = {window.to_s:g} is not after {window.from_s:g}")
     if flight.jet_model == "turbine" and flight.turbine is None:
         refuse("flight.jet_model", "'turbine' needs [flight.turbine]")
-    for objective in config.objectives.minimise:
-        if objective not in ("momentum", "joint_velocity", "thrust"):
-            refuse("objectives.minimise", f"no objective {objective!r}; there are momentum, joint_velocity, thrust")
+
+
+def _check_numbers(config: StudyConfig, refuse: Any) -> None:
+    """Names of objectives and limits, as far as they are known before an evaluation."""
+    names = config.objectives.names
+    if not 1 <= len(names) <= MOST_OBJECTIVES:
+        refuse("objectives", f"{len(names)} objectives: there must be one to {MOST_OBJECTIVES}")
+    if len(set(names)) != len(names):
+        refuse("objectives", f"{next(n for n in names if names.count(n) > 1)!r} is named twice")
+    for key, listed in (
+        ("objectives.minimise", config.objectives.minimise),
+        ("objectives.maximise", config.objectives.maximise),
+        ("constraints.limits", tuple(config.constraints.limits)),
+    ):
+        for name in listed:
+            if reason := _unknown_number(config, name):
+                refuse(key, reason)
+    for name, limit in config.constraints.limits.items():
+        if limit.minimum is None and limit.maximum is None:
+            refuse(f"constraints.limits.{name}", "needs min, max or both")
+        if limit.minimum is not None and limit.maximum is not None and limit.minimum > limit.maximum:
+            refuse(f"constraints.limits.{name}", f"min = {limit.minimum:g} is above max = {limit.maximum:g}")
+
+
+def _unknown_number(config: StudyConfig, name: str) -> str | None:
+    """Why there can be no such number; None if there may be."""
+    if ":" in name or name in QUANTITIES:
+        return None
+    path = name.partition("(")[2].rstrip(")") if "(" in name else name
+    first, _, rest = path.partition(".")
+    if first not in ("parts", "flight", "objective_families") or not rest:
+        near = difflib.get_close_matches(name, QUANTITIES, n=1)
+        hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(QUANTITIES)}, parts.…, flight.…"
+        return f"no number {name!r}; {hint}"
+    part = rest.partition(".")[0]
+    known = [part.name for part in config.parts]
+    if first == "parts" and part != "*" and part not in known:
+        return f"{name!r}: no part {part!r}; there are {', '.join(known)}"
+    return None

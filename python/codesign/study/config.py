@@ -261,17 +261,41 @@ class TrajectoryConfig(Section, frozen=True, kw_only=True):
 
 
 class ObjectivesConfig(Section, frozen=True, kw_only=True):
-    """Which objective family is minimised, and which of its members."""
+    """What is minimised and what is maximised: one to six numbers of an evaluation.
+
+    family: how momentum, joint_velocity and thrust are computed. Besides them any name of
+    `codesign.problem.quantities`, any path of the evaluation's document (`parts.strut.mass`, `flight.max_torque`,
+    `sum(parts.*.work)`), or `module:function`, a function of the document in a module beside the study file.
+    """
 
     family: Literal["rms", "script", "paper"] = "rms"
     minimise: tuple[str, ...] = ("momentum", "joint_velocity", "thrust")
+    maximise: tuple[str, ...] = ()
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Of the minimised numbers; what is maximised has a minus before its name."""
+        return self.minimise + tuple(f"-{name}" for name in self.maximise)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the numbers, without signs."""
+        return self.minimise + self.maximise
+
+
+class LimitConfig(Section, frozen=True, kw_only=True):
+    """Bounds of a number of the evaluation, in its SI unit."""
+
+    minimum: float | None = field(name="min", default=None)
+    maximum: float | None = field(name="max", default=None)
 
 
 class ConstraintsConfig(Section, frozen=True, kw_only=True):
     """What a design must satisfy. Clearances need the section [interference]; None: reported only.
 
     first_frequency_min_hz: of each part on its supports; None: not computed. buckling_factor_min: of each part, the
-    multiple of its load at which it buckles; None: not computed.
+    multiple of its load at which it buckles; None: not computed. limits: bounds of any number of the evaluation by name
+    or path, as in `ObjectivesConfig`: `"flight.max_torque" = { max = 50.0 }`.
     """
 
     safety_factor_min: Positive = 10.0
@@ -280,6 +304,7 @@ class ConstraintsConfig(Section, frozen=True, kw_only=True):
     plume_clearance_min_mm: float | None = None
     first_frequency_min_hz: Positive | None = None
     buckling_factor_min: Positive | None = None
+    limits: dict[str, LimitConfig] = {}
 
     @property
     def part_minima(self) -> dict[str, float]:

@@ -6,10 +6,9 @@ import functools
 import hashlib
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
-from codesign.parts.part import Part
 from codesign.study.config import DECIDING_SECTIONS, RawStudy
 
 PACKAGE = Path(__file__).parents[1]
@@ -25,10 +24,10 @@ def study_hash(raw: RawStudy, path: Path, code: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def code_hash(part_classes: Mapping[str, type[Part]]) -> str:
-    """Hash of the sources of the parts and of the engine."""
+def code_hash(modules: Iterable[str]) -> str:
+    """Hash of the sources of the study's own modules and of the engine."""
     digest = hashlib.sha256()
-    for module in sorted({cls.__module__ for cls in part_classes.values()}):
+    for module in sorted(modules):
         digest.update(Path(str(sys.modules[module].__file__)).read_bytes())
     digest.update(engine_hash().encode())
     return digest.hexdigest()[:16]

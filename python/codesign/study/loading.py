@@ -8,15 +8,17 @@ import importlib
 import importlib.util
 import sys
 import tomllib
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import ModuleType
+from typing import Any, cast
 
 from codesign.errors import StudyError
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import check_study
-from codesign.study.config import PartConfig
+from codesign.study.config import PartConfig, StudyConfig
 from codesign.study.conversion import convert
 from codesign.study.fingerprint import PACKAGE, code_hash, study_hash
 from codesign.study.study import Study
@@ -46,7 +48,8 @@ def load_study(source: str | Path = "ironcub") -> Study:
         raise StudyError(f"{path}: not valid TOML: {error}") from error
     config = convert(raw, path)
     part_classes = {part.name: _part_class(part, path) for part in config.parts}
-    code = code_hash(part_classes)
+    functions = {name: _function(name, path) for name in own_functions(config)}
+    code = code_hash({cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()})
     check_study(config, part_classes, path)
     space = DesignSpace(tuple(Variable(n, v.minimum, v.maximum, v.step, v.unit) for n, v in config.variables.items()))
     study = Study(
@@ -56,6 +59,7 @@ def load_study(source: str | Path = "ironcub") -> Study:
         config=config,
         space=space,
         part_classes=part_classes,
+        functions=functions,
         base_robot=RobotDescription.load(path.parent / config.robot.urdf),
         hash=study_hash(raw, path, code),
         code_hash=code,
@@ -78,6 +82,22 @@ def _locate(source: str | Path) -> Path:
     if not path.is_file():
         raise StudyError(f"{source}: no such study file; shipped studies: {', '.join(shipped_studies())}")
     return path.resolve()
+
+
+def own_functions(config: StudyConfig) -> list[str]:
+    """Objectives and limits that are functions of the study: `module:function`."""
+    return sorted(name for name in {*config.objectives.names, *config.constraints.limits} if ":" in name)
+
+
+def _function(name: str, path: Path) -> Callable[[Mapping[str, Any]], float]:
+    module_name, _, function_name = name.partition(":")
+    try:
+        function = getattr(_load_module(module_name, path.parent), function_name)
+    except Exception as error:  # whatever a user's module raises when it is imported
+        raise StudyError(f"{path}: {name!r}: {type(error).__name__}: {error}") from error
+    if not callable(function):
+        raise StudyError(f"{path}: {name!r}: not a function of an evaluation's document")
+    return cast("Callable[[Mapping[str, Any]], float]", function)
 
 
 def _part_class(part: PartConfig, path: Path) -> type[Part]:

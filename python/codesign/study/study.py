@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,6 +25,7 @@ class Study:
     """Everything that defines a study. Immutable; `load_study` makes and checks it.
 
     source: the name or path it was loaded from (worker processes load it again from there).
+    functions: own functions of an evaluation, `module:function`.
     raw: the parsed TOML, on which design variables with `sets` act. hash: of all that decides a result. code_hash: of
     the engine and the parts' sources, which with a part's own values and settings decide that part's numbers.
     """
@@ -35,6 +36,7 @@ class Study:
     config: StudyConfig
     space: DesignSpace
     part_classes: dict[str, type[Part]]
+    functions: dict[str, Callable[[Mapping[str, Any]], float]]
     base_robot: RobotDescription
     hash: str
     code_hash: str
@@ -56,8 +58,8 @@ class Study:
 
     @property
     def objectives(self) -> tuple[str, ...]:
-        """Names of the minimised objectives."""
-        return tuple(self.config.objectives.minimise)
+        """Keys of the minimised numbers; a maximised one has a minus before its name."""
+        return self.config.objectives.keys
 
     @property
     def optimizer(self) -> Any:

@@ -6,6 +6,8 @@ import pytest
 import codesign
 from codesign import dynamics
 from codesign.chain import chain as pipeline
+from codesign.chain.documents import flight_document, objective_families
+from codesign.chain.judge import judge
 from codesign.chain.flight import flight_settings, joint_names
 
 
@@ -21,6 +23,12 @@ def flown():
     return config, log, pipeline._clearances(config, pipeline.build_parts(study, design, config), robot, log)
 
 
+def judged(config, log, clearances):
+    """The verdict on a flight without parts."""
+    flight = flight_document("envelope", log, 0.0) | ({"interference": clearances} if clearances else {})
+    return judge(config, {"parts": {}, "flight": flight, "objective_families": objective_families(log)}, {})
+
+
 def test_a_flown_design_reports_its_nearest_pairs_and_plumes(flown):
     _, _, found = flown
     nearest = found["bodies"][0]
@@ -34,24 +42,24 @@ def test_a_flown_design_reports_its_nearest_pairs_and_plumes(flown):
 
 def test_clearances_are_no_constraint_unless_the_study_says_so(flown):
     config, log, found = flown
-    constraints, violations = pipeline._constraints(config, {}, log, found)
-    assert constraints["body_clearance"] == found["body_clearance"]
-    assert constraints["plume_clearance"] == found["plume_clearance"]
-    assert not any(violations.values())
+    verdict = judged(config, log, found)
+    assert verdict.constraints["body_clearance"] == found["body_clearance"]
+    assert verdict.constraints["plume_clearance"] == found["plume_clearance"]
+    assert verdict.status == "feasible" and not any(verdict.violations.values())
 
 
 def test_a_clearance_below_the_studys_limit_is_a_violation_with_a_reason(flown):
     config, log, found = flown
     limits = msgspec.structs.replace(config.constraints, body_clearance_min_mm=2.0, plume_clearance_min_mm=-100.0)
     strict = msgspec.structs.replace(config, constraints=limits)
-    _, violations = pipeline._constraints(strict, {}, log, found)
-    assert violations["body_clearance"] == pytest.approx((0.002 - found["body_clearance"]) / 0.01)
-    assert "plume_clearance" not in violations
-    assert "body clearance -20" in pipeline._reason(strict, {}, log, found)
+    verdict = judged(strict, log, found)
+    assert verdict.violations["body_clearance"] == pytest.approx((0.002 - found["body_clearance"]) / 0.01)
+    assert verdict.violations["plume_clearance"] == 0.0
+    assert verdict.status == "infeasible" and "body clearance -20" in (verdict.reason or "")
 
 
 def test_a_study_without_the_section_measures_nothing(flown):
     config, log, _ = flown
     silent = msgspec.structs.replace(config, interference=None)
     assert pipeline._clearances(silent, {}, None, log) == {}
-    assert "body_clearance" not in pipeline._constraints(silent, {}, log, {})[0]
+    assert "body_clearance" not in judged(silent, log, {}).constraints

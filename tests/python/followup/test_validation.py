@@ -103,7 +103,7 @@ def test_disturbances_differ_by_seed_and_matter(flown):
     one, two = (f.objectives["momentum"] for f in flown if f.role == "light")
     calm = disturbed_flights(STUDY, {"light": LIGHT}, ["trajectory_1"], 1, Disturbance(0.0, 1.0, 0.0, 0.0))[0]
     plain = load_study("ironcub")
-    from codesign.chain.chain import fly_robot
+    from codesign.chain.fly import fly_robot
 
     assert len({one, two, calm.objectives["momentum"]}) == 3
     undisturbed = fly_robot(plain, plain.build_robot(LIGHT), trajectory="trajectory_1")

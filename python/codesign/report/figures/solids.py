@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codesign.problem.evaluation import Evaluation
-from codesign.report.data import words
+from codesign.problem.quantities import words
 from codesign.report.details import FlightHistory, StressField
 from codesign.report.figures import style
 from codesign.report.figures.data import FigureData

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from codesign.problem.evaluation import Evaluation
-from codesign.report.data import Quantity, ReportData, constraint_quantity, words
+from codesign.problem.quantities import Quantity, quantity, words
+from codesign.report.data import ReportData
 from codesign.report.details import detail_key
 from codesign.units import DEGREE
 
@@ -71,7 +72,7 @@ def _row(
         "status": STATUS[evaluation.status],
         "reason": evaluation.reason,
         "f": [_rounded(evaluation.objectives.get(k)) for k in run.keys],
-        "c": [_shown(constraint_quantity(k), evaluation.constraints) for k in constraints],
+        "c": [_shown(quantity(k), evaluation.constraints) for k in constraints],
         "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
         "fl": [_shown(quantity, evaluation.flight) for quantity in FLIGHT_FACTS],
@@ -106,12 +107,12 @@ def _any_nonzero(run: ReportData, key: str) -> bool:
 
 def _constraint(run: ReportData, key: str) -> dict[str, Any]:
     """Words of a constraint; `rule` is empty for a number that is only watched."""
-    quantity = constraint_quantity(key)
+    shown = quantity(key)
     rule = ""
     if key in run.limits:
         sign, limit = run.limits[key]
-        rule = f"{ {'>=': '≥', '<=': '≤'}[sign] } {quantity.factor * limit:g}"
-    return {"key": key, "label": quantity.label, "unit": quantity.unit, "meaning": quantity.meaning, "rule": rule}
+        rule = f"{ {'>=': '≥', '<=': '≤'}[sign] } {shown.factor * limit:g}"
+    return {"key": key, "label": shown.label, "unit": shown.unit, "meaning": shown.meaning, "rule": rule}
 
 
 def _unit(unit: str) -> str:

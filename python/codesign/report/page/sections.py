@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from html import escape
 
+from codesign.problem.quantities import words as spelled
 from codesign.report.data import ReportData, reasons
-from codesign.report.data import words as spelled
 from codesign.report.page.validation import validation_tables
 from codesign.report.validation import Validation
 

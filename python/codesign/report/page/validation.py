@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from codesign.report.data import ReportData, words
+from codesign.problem.quantities import words
+from codesign.report.data import ReportData
 from codesign.report.validation import ORIGINAL, Validation
 from codesign.report.words import number, percent
 

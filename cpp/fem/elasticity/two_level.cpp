@@ -1,4 +1,4 @@
-#include "fem/la/two_level.hpp"
+#include "fem/elasticity/two_level.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fem/la/cholesky.hpp"
-#include "fem/la/lower_matrix.hpp"
+#include "fem/elasticity/stiffness.hpp"
 #include "fem/la/ordering.hpp"
 
 namespace codesign::fem {

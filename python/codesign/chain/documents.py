@@ -1,0 +1,47 @@
+"""A flight as JSON: objective families and tracking figures."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from codesign import dynamics as dyn
+from codesign.problem.quantities import FAMILY
+from codesign.study.config import StudyConfig
+
+
+def objective_families(log: dyn.FlightLog) -> dict[str, dict[str, float]]:
+    """All objective families of a flight; a number that is not finite is left out."""
+    families = {}
+    for family in ("rms", "script", "paper"):
+        values = getattr(log, family)
+        named = {name: getattr(values, name) for name in FAMILY}
+        families[family] = {name: value for name, value in named.items() if math.isfinite(value)}
+    return families
+
+
+def flight_document(trajectory: str, log: dyn.FlightLog, seconds: float) -> dict[str, Any]:
+    """Tracking figures of a flight for JSON, SI units; None for a number that is not finite."""
+    document: dict[str, Any] = {"trajectory": trajectory, "duration": (log.samples - 1) * log.step}
+    for name in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust", "max_torque", "min_clearance"):
+        value = getattr(log, name)
+        document[name] = value if math.isfinite(value) else None
+    document["ground_touched"] = bool(log.ground_touched)
+    document["qp_failures"] = log.qp_failures
+    document["completed"] = log.completed
+    if not document["completed"]:
+        document["failure_time"] = log.failure_time
+        document["failure_reason"] = log.failure_reason
+    document["seconds"] = seconds
+    return document
+
+
+def objective_parts(log: dyn.FlightLog, family: str, config: StudyConfig) -> dict[str, float]:
+    """What the members of an objective family are made of: momenta, and each joint group that counts."""
+    parts = getattr(log, f"{family}_parts")
+    groups = [group.name for group in config.flight.joint_groups if group.velocity_weight > 0]
+    return {
+        "linear_momentum": parts.linear_momentum,
+        "angular_momentum": parts.angular_momentum,
+        **dict(zip(groups, parts.joint_velocity, strict=True)),
+    }

@@ -1,0 +1,57 @@
+"""`codesign fly`: any robot that has the study's joints and jets, without parts."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from codesign import dynamics as dyn
+from codesign.chain.documents import flight_document, objective_families, objective_parts
+from codesign.chain.flight import find_trajectory, flight_settings, joint_names
+from codesign.chain.judge import loss
+from codesign.chain.provenance import provenance
+
+if TYPE_CHECKING:
+    from codesign.study import Study
+
+
+def fly_robot(
+    study: Study,
+    robot: str | Path,
+    trajectory: str | None = None,
+    jets: str | None = None,
+    as_published: bool = False,
+) -> dict[str, Any]:
+    """Flies any robot that has the study's joints and jets.
+
+    Args:
+        robot: path of a URDF or its text. trajectory, jets: instead of the study's. as_published: accept non-physical
+            inertias.
+    Returns: the JSON document of `codesign fly`.
+    Raises: UrdfError, StudyError.
+    """
+    config = study.config
+    settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory), jets)
+    start = time.perf_counter()
+    model = dyn.load_urdf(robot, joints=joint_names(config.flight), as_published=as_published)
+    loaded = time.perf_counter()
+    log = dyn.simulate_flight(model, settings)
+    end = time.perf_counter()
+    completed = log.completed
+    document = flight_document(trajectory or config.flight.trajectory, log, end - loaded)
+    return {
+        "robot": str(robot),
+        "status": "completed" if completed else "lost",
+        "reason": None if completed else loss(document),
+        "objectives": objective_families(log)[config.objectives.family],
+        "objective_families": objective_families(log),
+        "objective_parts": {
+            "rms": objective_parts(log, "rms", config),
+            "script": objective_parts(log, "script", config),
+        },
+        "constraints": {"qp_failures": log.qp_failures},
+        "flight": document,
+        "seconds": {"load": loaded - start, "flight": end - loaded, "total": end - start},
+        "provenance": provenance(study.hash),
+    }

@@ -1,0 +1,171 @@
+"""The judge: from the numbers of an evaluation to objectives, constraints and a verdict. Computes no physics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from codesign.errors import StudyError
+from codesign.problem.evaluation import Status
+from codesign.problem.quantities import FAMILY, MINUS, Quantity, quantity, read
+from codesign.study.config import StudyConfig
+from codesign.units import MILLIMETRE
+
+CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a safety factor of zero
+SHORTEST_MISS = 1e-6  # of a flight that was lost in its last sample
+
+Functions = Mapping[str, Callable[[Mapping[str, Any]], float]]
+Document = Mapping[str, Any]  # parts, flight, objective_families: as in `Evaluation`
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A bound [SI] on a number of the evaluation. scale: a miss by this much is a violation of 1."""
+
+    quantity: Quantity
+    least: float | None = None
+    most: float | None = None
+    scale: float = 1.0
+
+    def violation(self, value: float | None) -> float:
+        """By how much of the scale the bound is missed; 0: it holds. None: a number without bound (no buckling)."""
+        if self.least is not None:
+            return 0.0 if value is None else max(0.0, (self.least - value) / self.scale)
+        if self.most is None:
+            return 0.0
+        if value is None:
+            raise StudyError(f"constraints.limits.{self.quantity.key}: the evaluation has no such number")
+        return max(0.0, (value - self.most) / self.scale)
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What an evaluation is worth; fields as in `Evaluation`."""
+
+    status: Status
+    reason: str | None
+    objectives: dict[str, float] = field(default_factory=dict)
+    constraints: dict[str, float] = field(default_factory=dict)
+    violations: dict[str, float] = field(default_factory=dict)
+
+
+def judge(config: StudyConfig, document: Document, functions: Functions) -> Verdict:
+    """The verdict on the numbers of a design.
+
+    Args:
+        config: the study's, as configured by the design. document: parts, flight, objective_families.
+        functions: the study's own functions of an evaluation by key, `module:function`.
+    Raises: StudyError: an objective or limit names a number that the evaluation does not have.
+    """
+    flight = document["flight"]
+    lost = not flight["completed"]
+    constraints = {"qp_failures": float(max(flight["qp_failures"], int(lost)))}
+    violations: dict[str, float] = {}
+    reasons = []
+    for limit in limits(config):
+        value = value_of(document, limit.quantity, functions)
+        if value is not None:
+            constraints[limit.quantity.key] = value
+        if value is None and lost:
+            continue
+        violation = limit.violation(value)
+        violations[limit.quantity.key] = max(violation, violations.get(limit.quantity.key, 0.0))
+        if violation > 0.0:
+            reasons += misses(document, limit, value)
+    if config.constraints.flight_completed:
+        # The share of the flight that was missed: of two lost designs the one that flew longer is better.
+        flown = (flight.get("failure_time") or 0.0) / config.flight.duration_s
+        violations["qp_failures"] = max(1.0 - flown, SHORTEST_MISS) if lost else 0.0
+    if lost:
+        reasons.append(loss(flight))
+    constraints |= watched(document, constraints)
+    feasible = not any(violations.values())
+    return Verdict(
+        status="feasible" if feasible else "infeasible",
+        reason=None if feasible else "; ".join(reasons),
+        objectives={} if lost else objectives(config, document, functions),
+        constraints=constraints,
+        violations=violations,
+    )
+
+
+def objectives(config: StudyConfig, document: Document, functions: Functions) -> dict[str, float]:
+    """The minimised numbers by key. Raises: StudyError."""
+    found = {}
+    for key in config.objectives.keys:
+        sign, name = (-1.0, key[1:]) if key.startswith(MINUS) else (1.0, key)
+        if name in FAMILY:
+            value = document["objective_families"][config.objectives.family].get(name)
+        else:
+            value = value_of(document, quantity(name), functions)
+        if value is None:
+            raise StudyError(f"objective {name!r}: the evaluation has no such number")
+        found[key] = sign * value
+    return found
+
+
+def limits(config: StudyConfig) -> Iterator[Limit]:
+    """Everything that the study demands of a completed flight."""
+    asked = config.constraints
+    for key, least in asked.part_minima.items():
+        yield Limit(quantity(key), least=least, scale=least)
+    if config.interference is not None:
+        for key, gap_mm in (
+            ("body_clearance", asked.body_clearance_min_mm),
+            ("plume_clearance", asked.plume_clearance_min_mm),
+        ):
+            if gap_mm is not None:
+                yield Limit(quantity(key), least=gap_mm * MILLIMETRE, scale=CLEARANCE_SCALE)
+    for key, bound in asked.limits.items():
+        if bound.minimum is not None:
+            yield Limit(quantity(key), least=bound.minimum, scale=abs(bound.minimum) or 1.0)
+        if bound.maximum is not None:
+            yield Limit(quantity(key), most=bound.maximum, scale=abs(bound.maximum) or 1.0)
+
+
+def value_of(document: Document, wanted: Quantity, functions: Functions) -> float | None:
+    """A number of an evaluation [SI], None where it has none. Raises: StudyError: there is no such number."""
+    if wanted.key in functions:
+        value = float(functions[wanted.key](document))
+        if not math.isfinite(value):
+            raise StudyError(f"{wanted.key}: gave {value} for this design")
+        return value
+    if wanted.key in FAMILY:
+        member: float | None = document["objective_families"].get("rms", {}).get(wanted.key)
+        return member
+    return read(document, wanted.path or wanted.key)
+
+
+def watched(document: Document, judged: Mapping[str, float]) -> dict[str, float]:
+    """Clearances that are measured but not limited."""
+    measured = document["flight"].get("interference") or {}
+    names = ("body_clearance", "plume_clearance")
+    return {name: measured[name] for name in names if name in measured and name not in judged}
+
+
+def misses(document: Document, limit: Limit, value: float | None) -> list[str]:
+    """A missed limit in words; a limit of every part once for each part that misses it."""
+    key, label = limit.quantity.key, limit.quantity.label
+    if limit.quantity.path == f"min(parts.*.{key})":
+        each = {name: part.get(key) for name, part in document["parts"].items()}
+        return [
+            f"{name}: {_missed(limit, label, number)}"
+            for name, number in each.items()
+            if number is not None and number < (limit.least or -math.inf)
+        ]
+    return [_missed(limit, label, value)]
+
+
+def _missed(limit: Limit, label: str, value: float | None) -> str:
+    bound = limit.least if limit.least is not None else limit.most
+    factor, unit = limit.quantity.factor, f" {limit.quantity.unit}" if limit.quantity.unit else ""
+    side = "below" if limit.least is not None else "above"
+    words = label[:1].lower() + label[1:]
+    return f"{words} {factor * (value or 0.0):.4g}{unit} {side} {factor * (bound or 0.0):g}{unit}"
+
+
+def loss(flight: Mapping[str, Any]) -> str:
+    """Why a flight was lost, in words."""
+    return f"flight lost at {flight['failure_time']:.2f} s: {flight['failure_reason']}"

@@ -1,0 +1,183 @@
+"""The numbers of an evaluation that can be objectives, constraints or watched: one table for the whole project.
+
+Any number of the evaluation's document can be named by its dotted path (`flight.max_torque`, `parts.bracket.mass`); `*`
+stands for every entry of a level and needs one of min, max, sum around it: `sum(parts.*.mass)`. The table gives short
+names, words and units to those that people ask for.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from codesign.errors import StudyError
+from codesign.units import MILLIMETRE
+
+REDUCTIONS: dict[str, Callable[[Sequence[float]], float]] = {"min": min, "max": max, "sum": math.fsum}
+MINUS = "-"  # before a key: the quantity is maximised, its negative minimised
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number shown to people: its key in an Evaluation, its name in words, its unit, and what it means.
+
+    factor: from the SI value that is stored to `unit`. path: where the number stands in the document of an evaluation;
+    empty for the members of an objective family and for clearances, which the chain puts there under their key.
+    """
+
+    key: str
+    label: str
+    unit: str = ""
+    meaning: str = ""
+    factor: float = 1.0
+    path: str = ""
+
+    @property
+    def title(self) -> str:
+        """Label with unit, for axes and column heads."""
+        return f"{self.label} ({self.unit})" if self.unit else self.label
+
+
+_TABLE = (
+    Quantity(
+        "momentum",
+        "Momentum error",
+        "kg·m/s",
+        "Root mean square over the flight of the difference between the robot's linear and angular momentum and the "
+        "wanted one.",
+    ),
+    Quantity(
+        "joint_velocity",
+        "Joint velocity error",
+        "rad/s",
+        "Root mean square of the difference between commanded and reached joint velocities: torso counted twice, plus "
+        "both arms.",
+    ),
+    Quantity("thrust", "Thrust", "N", "Sum of the jet thrusts, averaged over the flight: what flying costs in fuel."),
+    Quantity("mass", "Mass of the parts", "kg", "Sum over the parts, each counted once.", path="sum(parts.*.mass)"),
+    Quantity(
+        "safety_factor",
+        "Safety factor",
+        "",
+        "Yield strength over peak stress of the weakest part.",
+        path="min(parts.*.safety_factor)",
+    ),
+    Quantity(
+        "first_frequency",
+        "First natural frequency",
+        "Hz",
+        "Lowest frequency of a part on its supports.",
+        path="min(parts.*.first_frequency)",
+    ),
+    Quantity(
+        "buckling_factor",
+        "Buckling factor",
+        "",
+        "Multiple of its load at which the first part buckles.",
+        path="min(parts.*.buckling_factor)",
+    ),
+    Quantity(
+        "max_displacement",
+        "Largest displacement of a part",
+        "mm",
+        "Under its load.",
+        1 / MILLIMETRE,
+        "max(parts.*.max_displacement)",
+    ),
+    Quantity(
+        "qp_failures",
+        "Controller failures",
+        "",
+        "Control steps without a solution.",
+        path="flight.qp_failures",
+    ),
+    Quantity(
+        "body_clearance",
+        "Body clearance",
+        "mm",
+        "Smallest gap beside the parts; below 0 they overlap.",
+        1 / MILLIMETRE,
+        "flight.interference.body_clearance",
+    ),
+    Quantity(
+        "plume_clearance",
+        "Plume clearance",
+        "mm",
+        "Smallest gap beside the jets; below 0 they hit.",
+        1 / MILLIMETRE,
+        "flight.interference.plume_clearance",
+    ),
+    Quantity(
+        "max_com_error",
+        "Largest position error",
+        "m",
+        "Of the center of mass, during the flight.",
+        path="flight.max_com_error",
+    ),
+    Quantity("max_torque", "Largest joint torque", "N·m", "During the flight.", path="flight.max_torque"),
+    Quantity("max_thrust", "Largest thrust of a jet", "N", "During the flight.", path="flight.max_thrust"),
+    Quantity("min_thrust", "Smallest thrust of a jet", "N", "During the flight.", path="flight.min_thrust"),
+)
+QUANTITIES = {quantity.key: quantity for quantity in _TABLE}
+FAMILY = ("momentum", "joint_velocity", "thrust")  # members of each objective family
+UNITLESS_IN = {"script": ("momentum", "joint_velocity"), "paper": ("momentum", "joint_velocity")}
+
+
+def words(key: str) -> str:
+    """A key as words: `jetpack_bracket` -> `Jetpack bracket`, `parts.rod.mass` -> `Parts: rod: mass`."""
+    text = key.replace("_", " ").replace(".", ": ").strip()
+    return text[:1].upper() + text[1:]
+
+
+def quantity(key: str, family: str = "rms") -> Quantity:
+    """What the table says of a key; a path, or an own function's name, is its own label.
+
+    A leading minus gives the quantity to be maximised. family: the objective family, which decides the unit.
+    """
+    if key.startswith(MINUS):
+        positive = quantity(key[1:], family)
+        return replace(positive, key=key, label=f"−{positive.label}", meaning=f"Maximized. {positive.meaning}", path="")
+    known = QUANTITIES.get(key, Quantity(key, words(key.rpartition(":")[2]), path=key))
+    if key in FAMILY and family != "rms":
+        unit = "" if key in UNITLESS_IN.get(family, ()) else known.unit
+        return replace(known, unit=unit, meaning=known.meaning if key == "thrust" else "")
+    return known
+
+
+def read(document: Mapping[str, Any], path: str) -> float | None:
+    """The number at a path of an evaluation's document; None where it has none (a part that cannot buckle, say).
+
+    Raises: StudyError if the path does not exist, with the nearest one that does.
+    """
+    call = re.fullmatch(r"(min|max|sum)\((.+)\)", path)
+    steps = (call[2] if call else path).split(".")
+    values = list(_values(document, steps, path))
+    if call is None:
+        if "*" in steps:
+            raise StudyError(f"{path!r}: a path with * needs min(…), max(…) or sum(…) around it")
+        return values[0]
+    numbers = [value for value in values if value is not None]
+    return float(REDUCTIONS[call[1]](numbers)) if numbers else None
+
+
+def _values(node: Any, steps: Sequence[str], path: str) -> Iterator[float | None]:
+    if not steps:
+        if node is not None and (isinstance(node, bool) or not isinstance(node, int | float)):
+            raise StudyError(f"{path!r}: is not a number of the evaluation")
+        yield None if node is None or not math.isfinite(node) else float(node)
+        return
+    children = node if isinstance(node, Mapping) else dict(enumerate(node)) if isinstance(node, list | tuple) else {}
+    if steps[0] == "*":
+        for child in children.values():
+            yield from _values(child, steps[1:], path)
+        return
+    named = {str(name): child for name, child in children.items()}
+    if steps[0] not in named:
+        near = difflib.get_close_matches(steps[0], named, n=1)
+        hint = f"nearest is {near[0]!r}" if near else f"there are {', '.join(named) or 'no numbers'}"
+        raise StudyError(f"{path!r}: the evaluation has no {steps[0]!r} there; {hint}")
+    yield from _values(named[steps[0]], steps[1:], path)

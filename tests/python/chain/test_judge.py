@@ -1,0 +1,108 @@
+"""The judge: any number of an evaluation as objective or constraint."""
+
+import msgspec
+import pytest
+
+from codesign.chain.judge import judge, limits
+from codesign.errors import StudyError
+from codesign.problem.quantities import QUANTITIES, quantity, read
+from codesign.study import load_study, new_study
+from codesign.study.config import LimitConfig
+
+PARTS = {
+    "rod": {"mass": 0.4, "safety_factor": 12.0, "buckling_factor": None, "frequencies": [80.0, 91.0]},
+    "plate": {"mass": 0.6, "safety_factor": 30.0, "buckling_factor": 55.0, "frequencies": [120.0, 140.0]},
+}
+FLIGHT = {"completed": True, "qp_failures": 0, "max_torque": 60.0, "max_com_error": None}
+DOCUMENT = {
+    "parts": PARTS,
+    "flight": FLIGHT,
+    "objective_families": {"rms": {"momentum": 1.5, "joint_velocity": 0.3, "thrust": 660.0}},
+}
+
+
+@pytest.fixture(scope="module")
+def config():
+    return load_study("gimbal_quad").config
+
+
+def asked(config, minimise=("momentum",), maximise=(), **bounds):
+    objectives = msgspec.structs.replace(config.objectives, minimise=minimise, maximise=maximise)
+    constraints = msgspec.structs.replace(config.constraints, limits=bounds.get("limits", {}))
+    return msgspec.structs.replace(config, objectives=objectives, constraints=constraints, interference=None)
+
+
+def test_numbers_of_an_evaluation_by_path():
+    assert read(DOCUMENT, "parts.rod.mass") == 0.4
+    assert read(DOCUMENT, "sum(parts.*.mass)") == pytest.approx(1.0)
+    assert read(DOCUMENT, "parts.plate.frequencies.1") == 140.0
+    assert read(DOCUMENT, "min(parts.*.buckling_factor)") == 55.0  # a part that cannot buckle does not count
+    assert read(DOCUMENT, "flight.max_com_error") is None
+    with pytest.raises(StudyError, match=r"no 'max_torq' there; nearest is 'max_torque'"):
+        read(DOCUMENT, "flight.max_torq")
+    with pytest.raises(StudyError, match="needs min"):
+        read(DOCUMENT, "parts.*.mass")
+    with pytest.raises(StudyError, match="is not a number"):
+        read(DOCUMENT, "parts.rod")
+
+
+def test_every_name_of_the_table_has_words_and_one_place():
+    for name, entry in QUANTITIES.items():
+        assert entry.key == name and entry.label and entry.meaning
+    assert len({entry.label for entry in QUANTITIES.values()}) == len(QUANTITIES)
+
+
+def test_mass_and_safety_factor_as_objectives(config):
+    verdict = judge(asked(config, ("mass", "parts.rod.mass"), ("safety_factor",)), DOCUMENT, {})
+    assert verdict.objectives == {"mass": pytest.approx(1.0), "parts.rod.mass": 0.4, "-safety_factor": -12.0}
+    assert quantity("-safety_factor").label == "−Safety factor"
+
+
+def test_a_constraint_on_any_number_takes_one_line_of_the_study(config):
+    strict = asked(config, limits={"max_torque": LimitConfig(maximum=50.0), "mass": LimitConfig(minimum=0.5, maximum=2.0)})
+    verdict = judge(strict, DOCUMENT, {})
+    assert verdict.status == "infeasible"
+    assert verdict.reason == "largest joint torque 60 N·m above 50 N·m"
+    assert verdict.violations["max_torque"] == pytest.approx(0.2)
+    assert verdict.violations["mass"] == 0.0
+    assert {limit.quantity.key for limit in limits(strict)} >= {"max_torque", "mass", "safety_factor"}
+
+
+def test_the_reason_names_every_part_that_misses_a_limit_of_all(config):
+    document = DOCUMENT | {"parts": {"rod": PARTS["rod"] | {"safety_factor": 9.5}, "plate": PARTS["plate"]}}
+    verdict = judge(asked(config), document, {})
+    assert verdict.reason == "rod: safety factor 9.5 below 10"
+    assert verdict.violations["safety_factor"] == pytest.approx(0.05)
+
+
+def test_own_functions_of_an_evaluation(tmp_path):
+    new_study(tmp_path / "study")
+    (tmp_path / "study" / "costs.py").write_text(
+        "def price(evaluation):\n    return 40.0 * sum(part['mass'] for part in evaluation['parts'].values())\n"
+    )
+    file = tmp_path / "study" / "study.toml"
+    text = file.read_text()
+    assert "[objectives]" in text
+    file.write_text(text.replace("[objectives]", '[objectives]\nminimise = ["momentum", "costs:price"]', 1))
+    study = load_study(file)
+    assert study.objectives == ("momentum", "costs:price")
+    assert judge(study.config, DOCUMENT, study.functions).objectives == {"momentum": 1.5, "costs:price": 40.0}
+    assert quantity("costs:price").label == "Price"
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('minimise = ["momentun"]', "did you mean momentum"),
+        ('minimise = ["parts.strutt.mass"]', "no part 'strutt'; there are strut"),
+        ('minimise = ["mass", "mass"]', "named twice"),
+        ("minimise = []", "one to 6"),
+        ('minimise = ["costs:price"]', "No module named 'costs'"),
+    ],
+)
+def test_wrong_names_are_refused_before_anything_runs(tmp_path, line, message):
+    new_study(tmp_path / "study")
+    file = tmp_path / "study" / "study.toml"
+    file.write_text(file.read_text().replace("[objectives]", f"[objectives]\n{line}", 1))
+    with pytest.raises(StudyError, match=message):
+        load_study(file)
