@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fem/elasticity/stiffness.hpp"
 #include "fem/mesh/tet10.hpp"
 
 namespace codesign::fem {

@@ -6,6 +6,7 @@
 #include "fem/la/cholesky.hpp"
 #include "fem/elasticity/stiffness.hpp"
 #include "fem/la/ordering.hpp"
+#include "fem/mesh/material.hpp"
 
 namespace codesign::fem {
 
