@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from codesign import dynamics as dyn
 from codesign.chain.documents import objective_families
 from codesign.chain.flight import flight_settings, joint_names
+from codesign.chain.study import Study, load_study
 from codesign.followup.validation import validate
 from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
@@ -36,7 +37,6 @@ from codesign.search.progress import ProgressBar
 from codesign.storage.cache import MemoryCache
 from codesign.storage.runs import Run, load_run
 from codesign.storage.store import DATABASE
-from codesign.study import Study, load_study
 
 PAPER_SECONDS = 216.0  # a design, as the paper states
 PAPER_YIELD, STATED_YIELD = 524.0, 462.0  # MPa: in the published safety factors, in the paper's text

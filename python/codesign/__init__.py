@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from codesign.chain.study import Study, load_study
     from codesign.problem.evaluation import Evaluation
     from codesign.search.optimization import optimize, resume
-    from codesign.study import Study, load_study
 
 __version__ = "0.1.0"
 __all__ = ["Evaluation", "Study", "evaluate", "load_study", "optimize", "resume"]
@@ -16,8 +16,8 @@ __all__ = ["Evaluation", "Study", "evaluate", "load_study", "optimize", "resume"
 # Imported when first used: a worker process needs no optimiser, a look at the version needs nothing.
 _HOMES = {
     "Evaluation": "codesign.problem.evaluation",
-    "Study": "codesign.study",
-    "load_study": "codesign.study",
+    "Study": "codesign.chain.study",
+    "load_study": "codesign.chain.study",
     "optimize": "codesign.search.optimization",
     "resume": "codesign.search.optimization",
 }
@@ -25,7 +25,7 @@ _HOMES = {
 
 def evaluate(theta: Mapping[str, float] | Sequence[float]) -> Evaluation:
     """One design of the default study through the whole chain; theta by names or in variable order, study units."""
-    from codesign.study import load_study
+    from codesign.chain.study import load_study
 
     return load_study().evaluate(theta)
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from codesign.chain.study import load_study
 from codesign.execution.pool import StudyRef
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.storage.store import Record, RunStore
-from codesign.study import load_study
 
 SPACE = DesignSpace(
     (

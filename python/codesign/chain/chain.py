@@ -35,10 +35,12 @@ MODES = 3  # natural frequencies of a part, where a study limits the first
 
 if TYPE_CHECKING:
     from codesign.storage.cache import PartCache
-    from codesign.study import Study
+    from codesign.study import StudyData
 
 
-def evaluate(study: Study, design: Design, trajectory: str | None = None, cache: PartCache | None = None) -> Evaluation:
+def evaluate(
+    study: StudyData, design: Design, trajectory: str | None = None, cache: PartCache | None = None
+) -> Evaluation:
     """One design through the whole chain.
 
     A CodesignError on the way (no mesh, say) gives a failed evaluation; anything else is a bug and is raised.
@@ -52,7 +54,7 @@ def evaluate(study: Study, design: Design, trajectory: str | None = None, cache:
 
 
 def evaluate_with_fields(
-    study: Study, design: Design, trajectory: str | None = None
+    study: StudyData, design: Design, trajectory: str | None = None
 ) -> tuple[Evaluation, dict[str, _core.PartAnalysis], dyn.FlightLog]:
     """As `evaluate`, together with what its numbers were read from: stress field of each part, histories of the flight.
 
@@ -64,7 +66,7 @@ def evaluate_with_fields(
 
 
 def _evaluate(
-    study: Study, design: Design, trajectory: str | None, cache: PartCache | None
+    study: StudyData, design: Design, trajectory: str | None, cache: PartCache | None
 ) -> tuple[Evaluation, _core.DesignResult]:
     start = time.perf_counter()
     config = study.configured(design)
@@ -113,7 +115,7 @@ def _evaluate(
     return evaluation, result
 
 
-def build_parts(study: Study, design: Mapping[str, float], config: StudyConfig | None = None) -> dict[str, Part]:
+def build_parts(study: StudyData, design: Mapping[str, float], config: StudyConfig | None = None) -> dict[str, Part]:
     """Parts of a design by name."""
     config = config or study.configured(design)
     parts = {}
@@ -156,7 +158,7 @@ def _asks_for(config: StudyConfig, *names: str) -> bool:
     return any(name in key for name in names for key in asked)
 
 
-def confirm_parts(study: Study, design: Design) -> dict[str, Confirmation]:
+def confirm_parts(study: StudyData, design: Design) -> dict[str, Confirmation]:
     """Every part of a design as the study analyses it, beside its full geometry on a fine mesh.
 
     Raises: MeshError, SolverError, GeometryError.
@@ -167,7 +169,7 @@ def confirm_parts(study: Study, design: Design) -> dict[str, Confirmation]:
     }
 
 
-def build_robot(study: Study, design: Mapping[str, float]) -> RobotDescription:
+def build_robot(study: StudyData, design: Mapping[str, float]) -> RobotDescription:
     """The base robot with this design's parts in it."""
     config = study.configured(design)
     parts = build_parts(study, design, config)
@@ -175,13 +177,13 @@ def build_robot(study: Study, design: Mapping[str, float]) -> RobotDescription:
 
 
 def _assemble(
-    study: Study, config: StudyConfig, parts: Mapping[str, Part], masses: Mapping[str, Any]
+    study: StudyData, config: StudyConfig, parts: Mapping[str, Part], masses: Mapping[str, Any]
 ) -> RobotDescription:
     bodies = {name: PartBody(masses[name], part.interfaces()) for name, part in parts.items()}
     return assemble(study.base_robot, {part.name: part.placements for part in config.parts}, bodies)
 
 
-def _part_key(study: Study, part: Part, settings: StressSettings) -> str:
+def _part_key(study: StudyData, part: Part, settings: StressSettings) -> str:
     """Cache key of a part's numbers: the code, every value of the part (`repr` is exact), how it is analysed."""
     return f"{study.code_hash}/{part.name}/{hashlib.sha256(repr((part, settings)).encode()).hexdigest()[:24]}"
 

@@ -13,11 +13,11 @@ from codesign.chain.judge import loss
 from codesign.chain.provenance import provenance
 
 if TYPE_CHECKING:
-    from codesign.study import Study
+    from codesign.study import StudyData
 
 
 def fly_robot(
-    study: Study,
+    study: StudyData,
     robot: str | Path,
     trajectory: str | None = None,
     jets: str | None = None,

@@ -21,7 +21,7 @@ from codesign.problem.design_space import Design
 from codesign.robot.package import write_urdf_package
 
 if TYPE_CHECKING:
-    from codesign.study import Study
+    from codesign.chain.study import Study
 
 
 def export_design(study: Study, theta: Mapping[str, float], out: str | Path) -> list[Path]:

@@ -69,7 +69,7 @@ def evaluate(
     as_json: JsonOption = False,
 ) -> int:
     """One design through the whole chain: parts, stress, robot, flight, objectives."""
-    from codesign.study import load_study
+    from codesign.chain.study import load_study
 
     loaded = load_study(study)
     evaluation = loaded.evaluate(parse_design(set_), trajectory=trajectory)
@@ -94,7 +94,7 @@ def fly(
 ) -> int:
     """Flies any URDF that has the study's joints and jets."""
     from codesign.chain.fly import fly_robot
-    from codesign.study import load_study
+    from codesign.chain.study import load_study
 
     result = fly_robot(load_study(study), robot, trajectory=trajectory, jets=jets, as_published=as_published)
     if as_json:
@@ -129,9 +129,9 @@ def optimize(
     as_json: JsonOption = False,
 ) -> int:
     """The study: searches the design grid for the best compromises."""
+    from codesign.chain.study import load_study
     from codesign.search.optimization import optimize as run_optimize
     from codesign.search.progress import ProgressBar
-    from codesign.study import load_study
 
     loaded = load_study(study)
     folder = out_dir or Path("runs") / f"{loaded.name}-{datetime.now(UTC):%Y%m%d-%H%M%S}"
@@ -230,8 +230,8 @@ def export(
     as_json: JsonOption = False,
 ) -> int:
     """Manufacturing and simulation files of one design: STL, STEP, URDF with meshes, VTU, JSON."""
+    from codesign.chain.study import load_study
     from codesign.cli.design import export_design
-    from codesign.study import load_study
 
     written = export_design(load_study(study), parse_design(set_), out_dir)
     if as_json:
@@ -283,7 +283,7 @@ def view(
     ] = None,
 ) -> int:
     """3-D viewer in the browser: robot, parts coloured by stress, flight playback. Ctrl-C ends it."""
-    from codesign.study import load_study
+    from codesign.chain.study import load_study
     from codesign.viewer import viewer
 
     if (run_dir is None) == (not set_):

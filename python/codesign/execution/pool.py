@@ -27,7 +27,7 @@ from codesign.execution.worker import LENGTH, write_message
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.protocols import Problem
 
-DEFAULT_LOADER = "codesign.study:load_study"
+DEFAULT_LOADER = "codesign.chain.study:load_study"
 START_LIMIT = 120.0  # s for a worker to import and load the study
 START_ATTEMPTS = 3  # failed starts in a row before the pool gives up
 RETRIES = 2  # of one task after its worker was killed from outside

@@ -49,7 +49,7 @@ class ExecutionDefaults(Protocol):
 class Problem(Protocol):
     """A study as the optimiser sees it.
 
-    Worker processes load it again: by `codesign.study.load_study(source)`, or by another `module:function` named in an
+    Worker processes load it again: by `codesign.load_study(source)`, or by another `module:function` named in an
     attribute `loader`.
     """
 

@@ -62,7 +62,7 @@ def _limits(study: Any) -> dict[str, tuple[str, float]]:
 
 def study_of(directory: Path) -> Any:
     """The study of a run, or None with a logged reason: a report must come out without it too."""
-    from codesign.study import load_study
+    from codesign.chain.study import load_study
 
     source = load_run(directory).study["source"]
     try:

@@ -1,7 +1,7 @@
 """A study as data: configuration, loading and checking. Computes nothing."""
 
-from codesign.study.loading import load_study, shipped_studies
+from codesign.study.loading import load, shipped_studies
 from codesign.study.scaffold import new_study
-from codesign.study.study import Study
+from codesign.study.study import StudyData
 
-__all__ = ["Study", "load_study", "new_study", "shipped_studies"]
+__all__ = ["StudyData", "load", "new_study", "shipped_studies"]

@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import ModuleType
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from codesign.errors import StudyError
 from codesign.parts.part import Part
@@ -21,9 +21,10 @@ from codesign.study.checks import check_study
 from codesign.study.config import PartConfig, StudyConfig
 from codesign.study.conversion import convert
 from codesign.study.fingerprint import PACKAGE, code_hash, study_hash
-from codesign.study.study import Study
+from codesign.study.study import StudyData
 
 STUDIES = PACKAGE / "studies"
+AnyStudy = TypeVar("AnyStudy", bound=StudyData)
 
 
 def shipped_studies() -> list[str]:
@@ -32,8 +33,8 @@ def shipped_studies() -> list[str]:
 
 
 @functools.lru_cache(maxsize=8)
-def load_study(source: str | Path = "ironcub") -> Study:
-    """Loads and checks a study.
+def load(source: str | Path, kind: type[AnyStudy]) -> AnyStudy:
+    """Loads and checks a study as an object of `kind`.
 
     Args:
         source: a shipped study's name, or the path of a study.toml or of its folder.
@@ -52,7 +53,7 @@ def load_study(source: str | Path = "ironcub") -> Study:
     code = code_hash({cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()})
     check_study(config, part_classes, path)
     space = DesignSpace(tuple(Variable(n, v.minimum, v.maximum, v.step, v.unit) for n, v in config.variables.items()))
-    study = Study(
+    study = kind(
         source=str(source if str(source) in shipped_studies() else path),
         path=path,
         raw=raw,

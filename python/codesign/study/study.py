@@ -1,12 +1,12 @@
-"""A study: checked configuration, design space, base robot and part classes; the entry to the whole chain."""
+"""A study as data: checked configuration, design space, base robot and part classes."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignSpace
@@ -14,15 +14,10 @@ from codesign.robot.description import RobotDescription
 from codesign.study.config import RawStudy, StudyConfig
 from codesign.study.conversion import convert, replace_number
 
-if TYPE_CHECKING:
-    from codesign.parts.load_case import Confirmation
-    from codesign.problem.evaluation import Evaluation
-    from codesign.storage.cache import PartCache
-
 
 @dataclass(frozen=True)
-class Study:
-    """Everything that defines a study. Immutable; `load_study` makes and checks it.
+class StudyData:
+    """Everything that defines a study. Immutable; `codesign.study.loading.load` makes and checks it.
 
     source: the name or path it was loaded from (worker processes load it again from there).
     functions: own functions of an evaluation, `module:function`.
@@ -91,32 +86,3 @@ class Study:
             for path in variable.sets:
                 replace_number(raw, path, design[name], self.path)
         return convert(raw, self.path)
-
-    def build_parts(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Part]:
-        """Parts of a design by name."""
-        from codesign.chain.chain import build_parts
-
-        return build_parts(self, self.space.design(theta))
-
-    def build_robot(self, theta: Mapping[str, float] | Sequence[float]) -> str:
-        """URDF text of the robot with this design's parts."""
-        from codesign.chain.chain import build_robot
-
-        return build_robot(self, self.space.design(theta)).to_text()
-
-    def evaluate(
-        self,
-        theta: Mapping[str, float] | Sequence[float],
-        trajectory: str | None = None,
-        cache: PartCache | None = None,
-    ) -> Evaluation:
-        """One design through the whole chain; `trajectory`: a name of the study, default its own."""
-        from codesign.chain.chain import evaluate
-
-        return evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
-
-    def confirm(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Confirmation]:
-        """Parts of a design by name, as analysed and with full geometry on a fine mesh (some seconds a part)."""
-        from codesign.chain.chain import confirm_parts
-
-        return confirm_parts(self, self.space.design(theta))

@@ -6,9 +6,9 @@ import re
 import pytest
 
 import codesign
+from codesign.chain.study import load_study
 from codesign.errors import DesignError
 from codesign.storage.cache import MemoryCache
-from codesign.study import load_study
 
 ORIGINAL = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
 

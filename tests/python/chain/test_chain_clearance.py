@@ -7,8 +7,8 @@ import codesign
 from codesign import dynamics
 from codesign.chain import chain as pipeline
 from codesign.chain.documents import flight_document, objective_families
-from codesign.chain.judge import judge
 from codesign.chain.flight import flight_settings, joint_names
+from codesign.chain.judge import judge
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,10 @@ import msgspec
 import pytest
 
 from codesign.chain.judge import judge, limits
+from codesign.chain.study import load_study
 from codesign.errors import StudyError
 from codesign.problem.quantities import QUANTITIES, quantity, read
-from codesign.study import load_study, new_study
+from codesign.study import new_study
 from codesign.study.config import LimitConfig
 
 MINIMISED = 'minimise = ["momentum", "joint_velocity", "thrust"]'

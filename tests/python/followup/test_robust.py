@@ -6,12 +6,12 @@ import msgspec
 import pytest
 
 from codesign.chain.flight import find_trajectory, flight_settings
+from codesign.chain.study import load_study
 from codesign.errors import DesignError, StudyError
 from codesign.followup.derived import coarse, load_coarse
 from codesign.followup.robust import aggregate, load_robust, robust
 from codesign.problem.evaluation import Evaluation
 from codesign.search.optimization import optimize, sweep
-from codesign.study import load_study
 from codesign.study.config import DisturbancesConfig
 from fake_study import FakeStudy, study
 

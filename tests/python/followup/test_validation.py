@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import synthetic_run
+from codesign.chain.study import load_study
 from codesign.errors import DesignError, StoreError, StudyError
 from codesign.followup.validation import disturbed_flights, select, validate
 from codesign.report.page.validation import strips, validation_tables
 from codesign.report.reading import read_report_data
 from codesign.report.validation import Disturbance, Flight, Validation, load_validation
-from codesign.study import load_study
 
 STUDY = synthetic_run.Study()
 LIGHT = {"angle": 1, "distance": 48, "offset": 88, "length": 50}

@@ -7,6 +7,7 @@ import pytest
 
 from codesign import _core, fem
 from codesign.chain.chain import stress_settings
+from codesign.chain.study import load_study
 from codesign.geometry.profile import Path, Resolution, circle
 from codesign.geometry.shape import Extrusion, Shape
 from codesign.geometry.solid import build_solid
@@ -15,7 +16,7 @@ from codesign.parts.part import Part, parameter
 from codesign.parts.surface import surface_mesh
 from codesign.problem.evaluation import Evaluation
 from codesign.studies.ironcub.bracket import JetpackBracket
-from codesign.study import load_study, new_study
+from codesign.study import new_study
 
 LENGTH, HALF_WIDTH, RADIUS, THICKNESS = 24.0, 10.0, 2.0, 4.0  # mm
 

@@ -4,10 +4,11 @@ import tomllib
 
 import pytest
 
+from codesign.chain.study import load_study
 from codesign.errors import StudyError
 from codesign.robot.table import generated_urdf
 from codesign.storage.cache import MemoryCache
-from codesign.study import load_study, new_study, shipped_studies
+from codesign.study import load, new_study, shipped_studies
 from codesign.study.loading import STUDIES
 
 BASELINE = "# The design that reports compare with.\n[baseline]"
@@ -34,7 +35,7 @@ def copy(tmp_path):
         text = file.read_text()
         assert old in text
         file.write_text(text.replace(old, new, 1))
-        load_study.cache_clear()
+        load.cache_clear()
         return load_study(folder)
 
     return edited

@@ -19,12 +19,12 @@ from synthetic_details import detail
 
 pytest.importorskip("viser", reason="viser is not installed (extra: view)")
 
+from codesign.chain.study import load_study
 from codesign.errors import CodesignError
 from codesign.report.details import FOLDER, save_detail
 from codesign.report.link_meshes import link_meshes, package_paths
 from codesign.report.reading import read_report_data
 from codesign.report.scene import robot_scene
-from codesign.study import load_study
 from codesign.viewer import viewer as viewing
 
 STUDY = synthetic_run.Study()

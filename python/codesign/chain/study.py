@@ -1,0 +1,55 @@
+"""A study that can be evaluated: its data and the chain in one object."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from codesign.chain import chain
+from codesign.parts.part import Part
+from codesign.study.loading import load
+from codesign.study.study import StudyData
+
+if TYPE_CHECKING:
+    from codesign.parts.load_case import Confirmation
+    from codesign.problem.evaluation import Evaluation
+    from codesign.storage.cache import PartCache
+
+
+@dataclass(frozen=True)
+class Study(StudyData):
+    """What a study defines, and the chain that evaluates its designs."""
+
+    def build_parts(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Part]:
+        """Parts of a design by name."""
+        return chain.build_parts(self, self.space.design(theta))
+
+    def build_robot(self, theta: Mapping[str, float] | Sequence[float]) -> str:
+        """URDF text of the robot with this design's parts."""
+        return chain.build_robot(self, self.space.design(theta)).to_text()
+
+    def evaluate(
+        self,
+        theta: Mapping[str, float] | Sequence[float],
+        trajectory: str | None = None,
+        cache: PartCache | None = None,
+    ) -> Evaluation:
+        """One design through the whole chain; `trajectory`: a name of the study, default its own."""
+        return chain.evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
+
+    def confirm(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Confirmation]:
+        """Parts of a design by name, as analysed and with full geometry on a fine mesh (some seconds a part)."""
+        return chain.confirm_parts(self, self.space.design(theta))
+
+
+def load_study(source: str | Path = "ironcub") -> Study:
+    """Loads and checks a study.
+
+    Args:
+        source: a shipped study's name, or the path of a study.toml or of its folder.
+    Raises: StudyError with file, key and reason.
+    """
+    study: Study = load(source, Study)
+    return study
