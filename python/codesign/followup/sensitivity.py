@@ -14,8 +14,9 @@ import numpy.typing as npt
 from codesign.errors import ExecutionError
 from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
-from codesign.search.base import Grid, grid_points
+from codesign.search.base import Grid
 from codesign.search.optimization import Resources, StudyLike, load_problem, resume, run_search
+from codesign.search.sampling import grid_points
 from codesign.search.settings import Settings
 from codesign.storage.runs import load_run
 from codesign.storage.store import DATABASE

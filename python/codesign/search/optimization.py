@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import Any, TypedDict, Unpack
 
 from codesign.errors import StudyError
 from codesign.execution.pool import DEFAULT_LOADER, Executor, Limits, LocalPool, StudyRef
 from codesign.execution.worker import load
 from codesign.problem.protocols import Problem
-from codesign.search.base import sub_grid
 from codesign.search.driver import Loop
 from codesign.search.progress import Progress
+from codesign.search.sampling import sub_grid
 from codesign.search.settings import Settings
 from codesign.storage.cache import SqliteCache, default_cache_path
 from codesign.storage.runs import Run, load_run
@@ -52,6 +52,7 @@ def optimize(
     lag: int | None = None,
     wall_time: float | None = None,
     stall_generations: int | None = None,
+    options: Mapping[str, Any] | None = None,
     **resources: Unpack[Resources],
 ) -> Run:
     """Searches the study's design grid for the best compromises and keeps every evaluation in folder `out`.
@@ -62,12 +63,14 @@ def optimize(
         population, generations: as in the study's [optimizer] unless given; the budget is their product.
         evaluations: the budget itself, instead of generations.
         seed: decides everything that is random.
-        algorithm: nsga2, nsga3, agemoea, agemoea2, smsemoa, or random (random search).
+        algorithm: nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an installed package gives in its
+            entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
         start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
         first: designs to evaluate at the head of the start population.
         steady: offspring without waiting for whole generations; `lag` designs unranked at most (default: population).
         wall_time: seconds after which no new design is asked for.
         stall_generations: ends when the hypervolume has grown by less than 0.1 % over so many generations.
+        options: of the algorithm itself, JSON values.
         resources: see Resources.
 
     Returns: the finished run.
@@ -91,6 +94,7 @@ def optimize(
         lag=lag,
         wall_time=wall_time,
         stall_generations=stall_generations,
+        options=dict(options or {}),
     )
     return run_search(study, settings, out, **resources)
 

@@ -7,9 +7,9 @@ as NaN, so no ranking can depend on them, and failed designs are not handed over
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,21 +17,24 @@ import numpy.typing as npt
 from codesign.errors import ExecutionError
 from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
-from codesign.search.base import Grid, Unseen
+from codesign.search.base import Grid
+from codesign.search.registry import SearchKind
+from codesign.search.sampling import Unseen, start_points
 
-ALGORITHMS = ("nsga2", "nsga3", "agemoea", "agemoea2", "smsemoa")
-ETA = 15.0  # distribution index of crossover and mutation: the larger, the closer children are to their parents
+if TYPE_CHECKING:
+    from codesign.search.settings import Settings
+
+Maker = Callable[["Settings", int, dict[str, Any]], Any]  # settings, number of objectives, arguments of all
 
 
 @dataclass(frozen=True, slots=True)
-class EvolutionSettings:
-    """What decides an evolutionary search, besides what it is told."""
+class EvolutionOptions:
+    """Own settings of the evolutionary searches.
 
-    algorithm: str = "nsga2"
-    population: int = 25
-    crossover_probability: float = 0.9  # that two parents are crossed
-    mutation_probability: float = 0.25  # of each variable
-    seed: int = 1
+    eta: distribution index of crossover and mutation: the larger, the closer children are to their parents.
+    """
+
+    eta: float = 15.0
 
 
 class Evolution:
@@ -42,22 +45,26 @@ class Evolution:
     """
 
     def __init__(
-        self, space: DesignSpace, objectives: Sequence[str], settings: EvolutionSettings, start: Sequence[Grid]
-    ):
+        self,
+        maker: Maker,
+        space: DesignSpace,
+        objectives: Sequence[str],
+        settings: Settings,
+        options: EvolutionOptions,
+    ) -> None:
         from pymoo.core.problem import Problem
         from pymoo.core.termination import NoTermination
 
-        if settings.algorithm not in ALGORITHMS:
-            raise ValueError(f"algorithm = {settings.algorithm!r}: one of {', '.join(ALGORITHMS)}, random")
         self._objectives = tuple(objectives)
         self._taken: set[Grid] = set()
         self._size = math.prod(space.levels)
         self._filler = Unseen(space.levels, np.random.default_rng([settings.seed, 1]), self._taken)
         self._started = False
-        self._start = list(start)
+        self._start = _start_population(space, settings)
         top = np.asarray(space.levels, dtype=float) - 1.0
         problem = Problem(n_var=len(top), n_obj=len(self._objectives), n_ieq_constr=1, xl=0.0 * top, xu=top)
-        self._algorithm = _algorithm(settings, len(self._objectives), np.array(self._start, dtype=float), self._taken)
+        common = _common(settings, options, np.array(self._start, dtype=float), self._taken)
+        self._algorithm = maker(settings, len(self._objectives), common)
         self._algorithm.setup(problem, termination=NoTermination())
 
     def ask(self, count: int) -> list[Grid]:
@@ -105,7 +112,17 @@ class Evolution:
         return np.array([evaluation.objectives[name] for name in self._objectives])
 
 
-def _algorithm(settings: EvolutionSettings, n_objectives: int, start: npt.NDArray[np.float64], taken: set[Grid]) -> Any:
+def _start_population(space: DesignSpace, settings: Settings) -> list[Grid]:
+    first = list(dict.fromkeys(settings.first))
+    drawn = start_points(space, settings.population, settings.start, settings.seed)
+    start = [*first, *(grid for grid in drawn if grid not in first)]
+    return start[: max(settings.population, len(first))]
+
+
+def _common(
+    settings: Settings, options: EvolutionOptions, start: npt.NDArray[np.float64], taken: set[Grid]
+) -> dict[str, Any]:
+    """Arguments of every algorithm: pymoo's words."""
     from pymoo.core.duplicate import DuplicateElimination
     from pymoo.operators.crossover.sbx import SBX
     from pymoo.operators.mutation.pm import PM
@@ -124,41 +141,44 @@ def _algorithm(settings: EvolutionSettings, n_objectives: int, start: npt.NDArra
                     fresh.append(i)
             return pop[fresh]
 
-    common = {
+    return {
         "pop_size": settings.population,
         "seed": settings.seed,
         "sampling": start,
-        "crossover": SBX(prob=settings.crossover_probability, eta=ETA),
-        "mutation": PM(prob=1.0, prob_var=settings.mutation_probability, eta=ETA),
+        "crossover": SBX(prob=settings.crossover_probability, eta=options.eta),
+        "mutation": PM(prob=1.0, prob_var=settings.mutation_probability, eta=options.eta),
         "repair": RoundingRepair(),
         "eliminate_duplicates": NeverTwice(),
     }
-    return _construct(settings, n_objectives, common)
 
 
-def _construct(settings: EvolutionSettings, n_objectives: int, common: dict[str, Any]) -> Any:
-    name = settings.algorithm
-    if name == "nsga2":
-        from pymoo.algorithms.moo.nsga2 import NSGA2
+def _nsga2(_settings: Settings, _n_objectives: int, common: dict[str, Any]) -> Any:
+    from pymoo.algorithms.moo import nsga2
 
-        return NSGA2(**common)
-    if name == "smsemoa":
-        from pymoo.algorithms.moo.sms import SMSEMOA
+    return nsga2.NSGA2(**common)
 
-        return SMSEMOA(**common, normalize=False)  # else it normalises with infeasible designs' objectives
-    if name in ("agemoea", "agemoea2"):
-        try:
-            from pymoo.algorithms.moo.age import AGEMOEA
-            from pymoo.algorithms.moo.age2 import AGEMOEA2
-        except Exception as error:  # what pymoo raises
-            raise ExecutionError(f"algorithm {name} needs the package numba: pip install numba") from error
-        return (AGEMOEA if name == "agemoea" else AGEMOEA2)(**common)
-    from pymoo.algorithms.moo.nsga3 import NSGA3
+
+def _nsga3(settings: Settings, n_objectives: int, common: dict[str, Any]) -> Any:
+    from pymoo.algorithms.moo import nsga3
     from pymoo.operators.selection.tournament import TournamentSelection
 
     # pymoo's own comparison draws from an unseeded generator when two violations are equal
     selection = TournamentSelection(func_comp=_less_violation_else_random)
-    return NSGA3(_directions(n_objectives, settings.population), **common, selection=selection)
+    return nsga3.NSGA3(_directions(n_objectives, settings.population), **common, selection=selection)
+
+
+def _smsemoa(_settings: Settings, _n_objectives: int, common: dict[str, Any]) -> Any:
+    from pymoo.algorithms.moo import sms
+
+    return sms.SMSEMOA(**common, normalize=False)  # else it normalises with infeasible designs' objectives
+
+
+def _agemoea(settings: Settings, _n_objectives: int, common: dict[str, Any]) -> Any:
+    try:
+        from pymoo.algorithms.moo import age, age2
+    except Exception as error:  # what pymoo raises
+        raise ExecutionError(f"algorithm {settings.algorithm} needs the package numba: pip install numba") from error
+    return (age.AGEMOEA if settings.algorithm == "agemoea" else age2.AGEMOEA2)(**common)
 
 
 def _less_violation_else_random(pop: Any, P: npt.NDArray[np.int_], random_state: Any, **_: Any) -> npt.NDArray[np.int_]:
@@ -181,3 +201,14 @@ def _directions(n_objectives: int, population: int) -> Any:
 
 def _grid(values: npt.NDArray[Any]) -> Grid:
     return tuple(int(v) for v in values)
+
+
+def _kind(maker: Maker) -> SearchKind:
+    return SearchKind(
+        lambda space, objectives, settings, options: Evolution(maker, space, objectives, settings, options),
+        options=EvolutionOptions,
+    )
+
+
+NSGA2, NSGA3, SMSEMOA = _kind(_nsga2), _kind(_nsga3), _kind(_smsemoa)
+AGEMOEA = AGEMOEA2 = _kind(_agemoea)

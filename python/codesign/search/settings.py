@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from codesign.problem.design_space import DesignSpace
-from codesign.search.base import Grid, Listed, RandomSearch, Search, start_points
+from codesign.search.base import Grid, Search
 from codesign.search.driver import Plan, Schedule, Stop
-from codesign.search.pymoo_search import ALGORITHMS, Evolution, EvolutionSettings
+from codesign.search.registry import find_search
 
 UNTOLD = 4096  # designs that a search which learns nothing asks for ahead
 
@@ -20,7 +20,8 @@ UNTOLD = 4096  # designs that a search which learns nothing asks for ahead
 class Settings:
     """Which designs a run evaluates, given what it is told; resume needs nothing else.
 
-    algorithm: one of evolution.ALGORITHMS; `random`; `listed` for the grid points in `listed`.
+    algorithm: a name that `codesign.search.registry.find_search` knows; `listed` for the grid points in `listed`.
+    options: the search's own settings.
     evaluations: the whole budget, start population included; None: until nothing is left to ask for.
     first: grid points at the head of the start population.
     steady: no barrier between generations; at most `lag` designs (default: population) are unranked at a time.
@@ -40,6 +41,7 @@ class Settings:
     stall_generations: int | None = None
     stall_tolerance: float = 1e-3
     listed: tuple[Grid, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.population < 2:
@@ -70,21 +72,13 @@ class Settings:
 
     def search(self, space: DesignSpace, objectives: Sequence[str]) -> Search:
         """The search that these settings describe. Raises: ValueError if they make no sense."""
-        if self.algorithm == "listed":
-            return Listed(self.listed)
-        if self.algorithm == "random":
-            return RandomSearch(space, self.seed)
-        evolution = EvolutionSettings(
-            self.algorithm, self.population, self.crossover_probability, self.mutation_probability, self.seed
-        )
-        first = list(dict.fromkeys(self.first))
-        start = [*first, *(g for g in start_points(space, self.population, self.start, self.seed) if g not in first)]
-        return Evolution(space, objectives, evolution, start[: max(self.population, len(first))])
+        kind = find_search(self.algorithm)
+        return kind.make(space, objectives, self, kind.checked_options(self.options))
 
     def plan(self, space: DesignSpace, objectives: Sequence[str]) -> Plan:
         """The search with when to ask and when to end. Raises: ValueError if the settings make no sense."""
         size = self.population
-        if self.algorithm not in ALGORITHMS:
+        if not find_search(self.algorithm).learns:
             schedule = Schedule(size, size, max(UNTOLD, size))
         elif self.steady:
             schedule = Schedule(size, 1, self.lag or size)

@@ -8,9 +8,10 @@ import pytest
 
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import non_dominated
-from codesign.search.base import RandomSearch, start_points, sub_grid
 from codesign.search.optimization import evaluate_designs, optimize, sweep
-from codesign.search.pymoo_search import ALGORITHMS, Evolution, EvolutionSettings
+from codesign.search.registry import BUILT_IN
+from codesign.search.sampling import RandomSearch, start_points, sub_grid
+from codesign.search.settings import Settings
 from codesign.storage.runs import Run
 from fake_study import FakeStudy, study
 
@@ -28,16 +29,16 @@ def tell_all(search, space: FakeStudy, count: int, batch: int) -> list[tuple[int
     return asked
 
 
-@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("algorithm", sorted(set(BUILT_IN) - {"random", "listed"}))
 @pytest.mark.parametrize("batch", [12, 1])
 def test_evolution_is_deterministic_and_never_asks_twice(algorithm: str, batch: int) -> None:
     if algorithm.startswith("age"):
         pytest.importorskip("numba")
     fake = study()
-    settings = EvolutionSettings(algorithm, population=12, seed=3)
+    settings = Settings(algorithm, population=12, seed=3)
     runs = []
     for _ in range(2):
-        search = Evolution(fake.space, fake.objectives, settings, start_points(fake.space, 12, "sobol", 3))
+        search = settings.search(fake.space, fake.objectives)
         runs.append(tell_all(search, fake, 120, batch))
         np.random.seed(len(runs))  # noqa: NPY002 - the global generator must not matter
         random.seed(len(runs))
@@ -56,8 +57,7 @@ def test_another_seed_gives_another_search() -> None:
 
 def test_small_grid_is_evaluated_whole_and_once() -> None:
     fake = study(levels=[5, 4, 3])
-    start = start_points(fake.space, 10, "sobol", 1)
-    search = Evolution(fake.space, fake.objectives, EvolutionSettings(population=10), start)
+    search = Settings(population=10).search(fake.space, fake.objectives)
     asked = tell_all(search, fake, 1000, 10)
     assert len(asked) == len(set(asked)) == 60
 
@@ -78,8 +78,7 @@ def test_failed_and_infeasible_designs_do_not_steer_by_numbers() -> None:
     fake = study()
 
     def run(objective: float) -> list[tuple[int, ...]]:
-        settings = EvolutionSettings(population=10)
-        search = Evolution(fake.space, fake.objectives, settings, start_points(fake.space, 10, "sobol", 1))
+        search = Settings(population=10).search(fake.space, fake.objectives)
         asked = []
         for _ in range(8):
             grids = search.ask(10)
@@ -97,7 +96,8 @@ def test_failed_and_infeasible_designs_do_not_steer_by_numbers() -> None:
         return asked
 
     assert run(-1e9) == run(1e9)
-    search = Evolution(fake.space, fake.objectives, EvolutionSettings(population=10), sub_grid(fake.space, (2, 5, 1)))
+    corners = Settings(population=10, first=tuple(sub_grid(fake.space, (2, 5, 1))))
+    search = corners.search(fake.space, fake.objectives)
     for _ in range(3):
         grids = search.ask(10)
         assert len(grids) == 10
