@@ -1,4 +1,4 @@
-"""Mass properties of a closed triangle mesh, and of the true curved solid by extrapolation over two resolutions."""
+"""Mass properties of a closed triangle mesh, and of the true curved solid by extrapolation over resolutions."""
 
 from __future__ import annotations
 
@@ -45,12 +45,32 @@ def volume_moments(points: Vector, triangles: Indices) -> Vector:
     return np.concatenate(([determinant.sum() / 6.0], determinant @ s / 24.0, second[i, j]))
 
 
-def extrapolate(coarse: Vector, fine: Vector) -> Vector:
-    """Value for infinitely many segments from two meshes, the fine one with twice as many chords on every arc.
+def settled(coarse: Vector, fine: Vector) -> bool:
+    """Whether two meshes are fine enough for `extrapolate`: volume (1e-5) and inertia (5e-5 about the com).
 
-    A chord polygon misses an area of order 1/n² beside its arc, so the leading error cancels in (4 fine - coarse) / 3.
+    Judged by how much they change from one mesh to the next. What is left after the extrapolation is at most a 1/400 of
+    that in the volume and a 1/130 in the inertia, both on a cylinder with 16 chords, and less with more chords.
     """
-    return (4.0 * fine - coarse) / 3.0
+    (volume, *inertia), (other_volume, *other_inertia) = _central(coarse), _central(fine)
+    changes = np.abs(np.divide(inertia, other_inertia) - 1.0)
+    return abs(volume / other_volume - 1.0) < 4e-3 and bool(changes.max() < 1.5e-2)
+
+
+def _central(moments: Vector) -> Vector:
+    """(4,) volume and integrals of xx, yy, zz about the centre of mass."""
+    com = moments[1:4] / moments[0]
+    return np.concatenate((moments[:1], moments[4:7] - moments[0] * com**2))
+
+
+def extrapolate(coarse: Vector, fine: Vector, finest: Vector | None = None) -> Vector:
+    """Value for infinitely many segments from two or three meshes, each with twice the chords of the one before.
+
+    A chord polygon misses an area of order 1/n² beside its arc, so the leading error cancels in (4 fine - coarse) / 3;
+    a third mesh cancels the next one, of order 1/n⁴, likewise.
+    """
+    if finest is None:
+        return (4.0 * fine - coarse) / 3.0
+    return (16.0 * extrapolate(fine, finest) - extrapolate(coarse, fine)) / 15.0
 
 
 def mass_properties(moments: Vector, density: float) -> MassProperties:

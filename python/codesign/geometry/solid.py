@@ -8,6 +8,7 @@ import manifold3d
 import numpy as np
 
 from codesign.errors import GeometryError
+from codesign.geometry.cavities import check_cavities
 from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Difference, Intersection, Moved, Shape, Union
 from codesign.geometry.tessellate import Indices, tessellate
@@ -54,9 +55,10 @@ class Solid:
 
 
 def build_solid(shape: Shape, resolution: Resolution, genus: int | None = None) -> Solid:
-    """Mesh of a shape. `genus`: the number of through holes it must have, if known.
+    """Mesh of a shape, of several closed surfaces if it has sealed cavities. `genus`: its through holes, if known.
 
-    Raises: GeometryError if the result is empty, falls apart into several bodies or has another number of holes.
+    Raises: GeometryError if the result is empty, falls apart into several bodies, has another number of holes, or a
+        cavity closed by nothing but a skin.
     """
     evaluator = _Evaluator(resolution)
     body = evaluator.evaluate_whole(shape)
@@ -64,11 +66,14 @@ def build_solid(shape: Shape, resolution: Resolution, genus: int | None = None) 
         raise GeometryError(f"the shape is not a closed solid: {body.status().name}")
     if body.is_empty():
         raise GeometryError("the shape is empty")
-    bodies = len(body.decompose())
-    if bodies != 1:
-        raise GeometryError(f"the shape falls apart into {bodies} bodies")
-    if genus is not None and body.genus() != genus:
-        raise GeometryError(f"the shape has {body.genus()} through holes instead of {genus}: features overlap")
+    shells = body.decompose()
+    bodies = [shell for shell in shells if shell.volume() > 0.0]
+    if len(bodies) != 1:
+        raise GeometryError(f"the shape falls apart into {len(bodies)} bodies")
+    check_cavities(bodies[0], [shell for shell in shells if shell.volume() <= 0.0])
+    holes = sum(shell.genus() for shell in shells)  # the genus of a body with cavities lacks one for each of them
+    if genus is not None and holes != genus:
+        raise GeometryError(f"the shape has {holes} through holes instead of {genus}: features overlap")
     mesh = body.to_mesh64()
     merge = np.arange(len(mesh.vert_properties))
     merge[mesh.merge_from_vert] = mesh.merge_to_vert

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any
 
 from codesign.errors import GeometryError
-from codesign.geometry.mass import MassProperties, extrapolate, mass_properties, volume_moments
+from codesign.geometry.mass import MassProperties, extrapolate, mass_properties, settled, volume_moments
 from codesign.geometry.mesh_files import write_stl
 from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Shape, face_names
@@ -19,7 +19,7 @@ from codesign.geometry.solid import Solid, build_solid
 from codesign.parts.surface import SurfaceMesh, surface_mesh
 
 _PARAMETER = "codesign.parameter"
-# Of the coarser of the two meshes that mass properties are extrapolated from.
+# Of the coarsest of the meshes that mass properties are extrapolated from.
 MASS_SEGMENTS, MASS_CHORD_MM = 24, 0.12
 EXPORT_RESOLUTION = Resolution(segments=4096, chord_mm=0.01)
 SURFACE_RESOLUTION = Resolution(segments=48)
@@ -131,7 +131,7 @@ class Part(ABC):
         return surface_mesh(_checked(self.fem_shape(geometry, **variant), resolution).tidied())
 
     def mass_properties(self) -> MassProperties:
-        """Mass, centre of mass and inertia of the true curved solid (relative error below 1e-5), part frame, SI."""
+        """Mass (to 1e-5), centre of mass and inertia (to 5e-5) of the true curved solid, part frame, SI."""
         return mass_properties(_moments(self), self.density)
 
     @property
@@ -191,12 +191,14 @@ def _solid(part: Part, resolution: Resolution) -> Solid:
 
 @lru_cache(maxsize=64)
 def _moments(part: Part) -> Vector:
-    """Volume moments (10,) in mm of the true curved solid."""
-    moments = []
-    for refine in (1, 2):
-        solid = _checked(part.shape(), Resolution(MASS_SEGMENTS, MASS_CHORD_MM, refine), part.through_holes())
-        moments.append(volume_moments(solid.points, solid.triangles))
-    return extrapolate(*moments)
+    """Volume moments (10,) in mm of the true curved solid; a round part needs a third mesh."""
+    coarse, fine = (_mesh_moments(part, refine) for refine in (1, 2))
+    return extrapolate(coarse, fine, None if settled(coarse, fine) else _mesh_moments(part, 4))
+
+
+def _mesh_moments(part: Part, refine: int) -> Vector:
+    solid = _checked(part.shape(), Resolution(MASS_SEGMENTS, MASS_CHORD_MM, refine), part.through_holes())
+    return volume_moments(solid.points, solid.triangles)
 
 
 def _checked(shape: Shape, resolution: Resolution, genus: int | None = None) -> Solid:
