@@ -122,7 +122,7 @@ def build_parts(study: StudyData, design: Mapping[str, float], config: StudyConf
     for part in config.parts:
         make: Callable[..., Part] = study.part_classes[part.name]
         parameters = {parameter: design[variable] for parameter, variable in part.parameters.items()}
-        density = config.materials[part.material].density_kg_m3
+        density = part.density_kg_m3 or config.materials[part.material].density_kg_m3
         parts[part.name] = make(**parameters, **part.options, density=density)
     return parts
 
@@ -136,7 +136,7 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
             part.material,
             young_modulus=material.young_modulus_gpa * GIGA,
             poisson_ratio=material.poisson_ratio,
-            density=material.density_kg_m3,
+            density=part.density_kg_m3 or material.density_kg_m3,
             yield_strength=material.yield_strength_mpa * MEGA,
         ),
         supports=tuple(part.supports),

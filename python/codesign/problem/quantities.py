@@ -46,16 +46,16 @@ _TABLE = (
     Quantity(
         "momentum",
         "Momentum error",
-        "kg·m/s",
-        "Root mean square over the flight of the difference between the robot's linear and angular momentum and the "
-        "wanted one.",
+        "kg·m/s + kg·m²/s",
+        "Root mean square over the flight of the error of the linear momentum (kg·m/s) plus that of the angular "
+        "momentum about the center of mass (kg·m²/s), added as numbers.",
     ),
     Quantity(
         "joint_velocity",
         "Joint velocity error",
         "rad/s",
-        "Root mean square of the difference between commanded and reached joint velocities: torso counted twice, plus "
-        "both arms.",
+        "Root mean square of the difference between commanded and reached joint velocities, summed over the joint "
+        "groups by their weights.",
     ),
     Quantity("thrust", "Thrust", "N", "Sum of the jet thrusts, averaged over the flight: what flying costs in fuel."),
     Quantity("mass", "Mass of the parts", "kg", "Sum over the parts, each counted once.", path="sum(parts.*.mass)"),

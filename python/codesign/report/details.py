@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from codesign.problem.evaluation import Evaluation
 
 FOLDER = "details"
-SAMPLES = 1051  # kept of a flight history: 40 ms steps of 42 s
+SAMPLES = 1200  # kept of a flight history: one a pixel of a wide chart
 
 Array = NDArray[np.float64]
 
@@ -158,7 +158,9 @@ def flight_history(
         "com_error": np.linalg.norm(np.asarray(log.com)[kept] - np.asarray(log.com_reference)[kept], axis=1),
         "attitude_error": rotation_angle(turned),
         "thrust": np.asarray(log.thrust)[kept],
-        "joint_velocity_error": np.stack([np.linalg.norm(velocity[:, c], axis=1) for c in columns], axis=1),
+        "joint_velocity_error": np.array([np.linalg.norm(velocity[:, c], axis=1) for c in columns])
+        .reshape(-1, len(velocity))
+        .T,
         "base_position": np.asarray(log.base_position)[kept],
         "base_rotation": rotation,
         "joint_positions": np.asarray(log.joint_positions)[kept],

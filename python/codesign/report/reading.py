@@ -9,9 +9,10 @@ from typing import Any
 from codesign.chain.judge import limits
 from codesign.errors import CodesignError
 from codesign.problem.evaluation import Evaluation
-from codesign.problem.quantities import quantity, words
+from codesign.problem.quantities import words
 from codesign.report.data import Entry, ReportData
 from codesign.report.details import load_details
+from codesign.report.study_words import objective_quantities
 from codesign.storage.runs import Run, load_run
 
 logger = logging.getLogger(__name__)
@@ -28,13 +29,12 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
     """
     run = load_run(directory)
     evaluated = baseline or _stored_baseline(run, study)
-    family = study.config.objectives.family if study is not None else "rms"
     return ReportData(
         directory=Path(directory),
         title=study.title if study is not None else words(run.study["name"]),
         description=" ".join(study.description.split()) if study is not None else "",
         variables=run.space.variables,
-        objectives=tuple(quantity(key, family) for key in run.objectives),
+        objectives=objective_quantities(run.objectives, None if study is None else study.config),
         entries=tuple(
             Entry(int(r.number if r.number is not None else k), r.evaluation, r.generation)
             for k, r in enumerate(run.search_records)

@@ -41,17 +41,28 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class RobotScene:
-    """Everything to draw a robot. jets: frames whose thrust pushes the robot along their −z."""
+    """Everything to draw a robot.
+
+    jets: frames whose thrust pushes the robot along their −z. max_thrust: of one jet [N].
+    """
 
     robot: RobotDescription
     pieces: tuple[Piece, ...]
     jets: tuple[str, ...] = ()
     joints: tuple[str, ...] = field(default=())
+    max_thrust: float = 1.0
 
     @cached_property
     def links(self) -> tuple[str, ...]:
         """Links that carry a piece."""
         return tuple(dict.fromkeys(piece.link for piece in self.pieces))
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the box around the robot with all joints at zero [m]; 1 if there is nothing to draw."""
+        poses = self.poses()
+        points = [p.points @ poses[p.link][:3, :3].T + poses[p.link][:3, 3] for p in self.pieces]
+        return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0))) if points else 1.0
 
     def poses(self, joint_positions: Any = None, base: Matrix | None = None) -> dict[str, Matrix]:
         """world_T_link of every link: (4, 4), or (k, 4, 4) for joint positions (k, joints) and base poses (k, 4, 4).
@@ -99,7 +110,14 @@ def robot_scene(
             own = [Piece(link, points, triangles, own[0].colour) for points, triangles in real[link]]
         pieces += placed.get(link) or own
     joints = tuple(joint for group in config.flight.joint_groups for joint in group.joints)
-    return RobotScene(robot, tuple(pieces), tuple(config.flight.jets.frames), joints)
+    jets = config.flight.jets
+    return RobotScene(robot, tuple(pieces), tuple(jets.frames), joints, jets.max_thrust_n)
+
+
+def round_number(value: float) -> float:
+    """The nearest of 1, 2, 5 times a power of ten: for scales and grids. value > 0."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(power * min((1.0, 2.0, 5.0, 10.0), key=lambda step: abs(np.log(step * power / value))))
 
 
 def _real_shapes(

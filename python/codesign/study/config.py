@@ -53,13 +53,14 @@ class PartConfig(Section, frozen=True, kw_only=True):
 
     shape: `module:Class`; the module is a file beside study.toml or any importable module.
     parameters: the part's parameter -> design variable. supports: faces that are clamped. options: further keyword
-    arguments of the class.
+    arguments of the class. density_kg_m3: of the part's mass, where it is not that of the material; reports say so.
     """
 
     name: str
     shape: str
     parameters: dict[str, str]
     material: str
+    density_kg_m3: Positive | None = None
     supports: list[str]
     loads: list[LoadConfig]
     placements: list[PartPlacement] = []

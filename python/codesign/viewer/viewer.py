@@ -29,15 +29,16 @@ from codesign.report.details import FOLDER, Detail, detail_key, load_details, sa
 from codesign.report.figures.flights import sample_at
 from codesign.report.figures.solids import base_pose, stress_tint
 from codesign.report.reading import read_report_data, same_study, study_of
-from codesign.report.scene import Piece, robot_scene
+from codesign.report.scene import Piece, robot_scene, round_number
 from codesign.report.words import number, percent
 from codesign.transforms import Matrix
 
 FRAMES_PER_SECOND = 20.0
 RECORDED_PER_SECOND = 12.5
-NEWTONS_PER_METRE = 400.0  # of the thrust arrows
+ARROW_LENGTH = 0.33  # of the thrust arrows at the largest thrust, of the robot's size
+LINE = 0.0065  # radius of arrows and paths, of the robot's size
 SRGB_EXPONENT = 2.2  # of screen colours, roughly
-CLOSE = 2.0  # m from the robot to the camera that follows it
+CLOSE = 1.1  # from the robot to the camera that follows it, of the robot's size
 SPEEDS = {"¼ ×": 0.25, "½ ×": 0.5, "1 ×": 1.0, "2 ×": 2.0, "4 ×": 4.0}
 PART = (0, 114, 178)
 ARROW = (230, 122, 20)
@@ -202,6 +203,7 @@ class Viewer:
             detail = self._detail(choice)
             self._choice, self._detail_shown, self._flight = choice, detail, detail.flight
             self._scene = robot_scene(self._study, choice.design, detail.parts, self._packages)
+            self._thrusts.label = f"Thrusts (1 m is {self._newtons_per_metre:g} N)"
             self._compute_motion()
             self._build_scene()
             self._pose(0)
@@ -253,10 +255,6 @@ class Viewer:
         scene.enable_default_lights(cast_shadow=False)
         scene.add_light_ambient("/light/ambient", intensity=1.2)
         self._world = scene.add_frame("/world", show_axes=False)  # moves under the robot while the camera follows it
-        scene.add_grid(
-            "/world/ground", width=40.0, height=40.0, cell_size=0.5, section_size=1.0, cell_color=(225, 227, 230),
-            section_color=(205, 208, 212), fade_distance=25.0,
-        )  # fmt: skip
         self._server.gui.configure_theme(
             control_layout="collapsible", show_logo=False, show_share_button=False, brand_color=PART
         )
@@ -266,6 +264,7 @@ class Viewer:
         with self._server.atomic():
             scene.remove_by_name("/world/robot")
             scene.remove_by_name("/world/path")
+            self._lay_ground()
             self._frames = {
                 link: scene.add_frame(f"/world/robot/{link}", show_axes=False) for link in self._scene.links
             }
@@ -275,12 +274,28 @@ class Viewer:
             if self._flight is not None:
                 none = np.zeros((len(self._flight.jets), 2, 3))
                 self._arrows = scene.add_arrows(
-                    "/world/robot/thrusts", none, ARROW, shaft_radius=0.012, head_radius=0.03, head_length=0.06
+                    "/world/robot/thrusts",
+                    none,
+                    ARROW,
+                    shaft_radius=LINE * self._scene.size,
+                    head_radius=2.5 * LINE * self._scene.size,
+                    head_length=5.0 * LINE * self._scene.size,
                 )
                 self._add_path("/world/path/reference", self._flight["com_reference"], REFERENCE)
                 self._add_path("/world/path/flown", self._flight["com"], PATH)
         self._show_layers()
         self._aim()
+
+    def _lay_ground(self) -> None:
+        """A grid of which the robot covers a few squares, large enough for its whole path."""
+        size = self._scene.size
+        section = round_number(0.5 * size)
+        path = 0.0 if self._flight is None else float(np.abs(self._flight["com"][:, :2]).max())
+        wide = 2.0 * section * np.ceil((path + 10.0 * size) / section)
+        self._server.scene.add_grid(
+            "/world/ground", width=wide, height=wide, cell_size=section / 2.0, section_size=section,
+            cell_color=(225, 227, 230), section_color=(205, 208, 212), fade_distance=13.0 * size,
+        )  # fmt: skip
 
     def _add_piece(self, name: str, piece: Piece) -> None:
         """A solid in its colour; a part with stresses a second time, in theirs."""
@@ -299,17 +314,20 @@ class Viewer:
 
     def _add_path(self, name: str, points: Array, colour: tuple[int, int, int]) -> None:
         segments = np.stack([points[:-1], points[1:]], axis=1)
-        self._server.scene.add_line_segments(name, segments.astype(np.float32), colour, thickness=0.012)
+        self._server.scene.add_line_segments(
+            name, segments.astype(np.float32), colour, thickness=LINE * self._scene.size
+        )
 
     def _aim(self) -> None:
         """Puts all cameras, also those to come, to the robot's front left: near it, or where its whole path is seen."""
         if self._flight is None:
             return
         start, path = self._flight["com"][0], self._flight["com"]
-        target, distance = start, CLOSE
+        close = CLOSE * self._scene.size
+        target, distance = start, close
         if not self._follow.value:
             target = 0.5 * (start + (path.min(axis=0) + path.max(axis=0)) / 2.0)
-            distance = max(CLOSE, float(np.linalg.norm(np.ptp(path, axis=0))))
+            distance = max(close, float(np.linalg.norm(np.ptp(path, axis=0))))
         ahead = self._flight["base_rotation"][0, :, 0]
         side = np.array([-ahead[1], ahead[0], 0.0])
         position = target + distance * (0.4 * ahead + 0.65 * side + np.array([0.0, 0.0, 0.25]))
@@ -331,8 +349,13 @@ class Viewer:
         self._motion = {link: _placed(poses[link]) for link in self._scene.links}
         jets = np.stack([poses[jet] for jet in flight.jets], axis=1)
         foot = jets[..., :3, 3]
-        force = -jets[..., :3, 2] * flight["thrust"][..., None] / NEWTONS_PER_METRE
+        force = -jets[..., :3, 2] * flight["thrust"][..., None] / self._newtons_per_metre
         self._arrow_points = np.stack([foot, foot + force], axis=2).astype(np.float32)
+
+    @property
+    def _newtons_per_metre(self) -> float:
+        """Scale of the thrust arrows [N/m]."""
+        return round_number(self._scene.max_thrust / (ARROW_LENGTH * self._scene.size))
 
     def _pose(self, k: int) -> None:
         """Puts all links and arrows where they are at sample `k`."""
@@ -361,12 +384,12 @@ class Viewer:
         gui = self._server.gui
         self._picker = gui.add_dropdown("Design", self.names)
         self._button = gui.add_button("Play")
-        self._slider = gui.add_slider("Time (s)", 0.0, 42.0, 0.04, 0.0)
+        self._slider = gui.add_slider("Time (s)", 0.0, 0.04, 0.04, 0.0)
         self._speed = gui.add_dropdown("Speed", list(SPEEDS), initial_value="1 ×")
         self._follow = gui.add_checkbox("Camera follows the robot", True)
         with gui.add_folder("Show"):
             self._stress = gui.add_checkbox("Stress on the parts", True)
-            self._thrusts = gui.add_checkbox(f"Thrusts (1 m is {NEWTONS_PER_METRE:g} N)", True)
+            self._thrusts = gui.add_checkbox("Thrusts", True)
             self._trail = gui.add_checkbox("Path: flown and wanted", True)
         self._status = gui.add_markdown("")
         self._picker.on_update(lambda _: self.show(self._picker.value))

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from codesign.chain.flight import find_trajectory
 from codesign.report.details import FlightHistory
 from codesign.report.figures import style
 from codesign.report.figures.data import FigureData
@@ -64,7 +65,7 @@ def _error(axes: Any, main: FlightHistory, other: FlightHistory | None, key: str
 
 def _mark_commands(axes: Any, study: Any, trajectory: str, words: bool) -> None:
     """Shades the time windows in which the pilot commands something, and names the commands."""
-    windows = study.config.trajectories[trajectory].windows if study is not None else []
+    windows = find_trajectory(study.config, trajectory).windows if study is not None else []
     for window in windows:
         axes.axvspan(window.from_s, window.to_s, color="#f1f1ee", linewidth=0, zorder=0)
         if words:

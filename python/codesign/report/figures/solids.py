@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from codesign.chain.flight import find_trajectory
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.quantities import words
 from codesign.report.details import FlightHistory, StressField
@@ -16,16 +17,16 @@ from codesign.report.figures import style
 from codesign.report.figures.data import FigureData
 from codesign.report.figures.flights import sample_at
 from codesign.report.raster import Array, Body, View, fitting_view, render
-from codesign.report.scene import RobotScene, robot_scene, with_descendants
+from codesign.report.scene import RobotScene, robot_scene, round_number, with_descendants
 from codesign.transforms import Matrix
 
 PART_VIEW = (-55.0, 28.0)  # azimuth, elevation [deg]
 ROBOT_VIEW = (148.0, 22.0)  # relative to where the robot looks
 SNAPSHOTS = 7
-POSTURE_TIME = 8.0  # s: the robot hovers, its arms have settled
+SETTLED = 0.8  # of the time before the first command: the robot hovers, its joints have settled
 FLAME = np.array([0.96, 0.55, 0.16])
-FLAME_LENGTH = 0.55  # m at FLAME_THRUST
-FLAME_THRUST = 250.0  # N
+FLAME_LENGTH = 0.3  # of the robot's size, at the largest thrust
+FLAME_RADIUS = 0.025  # of the robot's size
 
 
 def stress(data: FigureData) -> Any:
@@ -130,8 +131,14 @@ def posture(data: FigureData, evaluation: Evaluation) -> tuple[Array, Matrix]:
     if detail is None or detail.flight is None:
         groups = data.study.config.flight.joint_groups
         return np.concatenate([np.asarray(group.initial_rad, dtype=float) for group in groups]), np.eye(4)
-    k = sample_at(detail.flight, POSTURE_TIME)
+    k = sample_at(detail.flight, hover_time(data.study, detail.flight))
     return detail.flight["joint_positions"][k], base_pose(detail.flight, k)
+
+
+def hover_time(study: Any, flight: FlightHistory) -> float:
+    """A moment of a flight at which the robot hovers: before the first command, or at the end if there is none [s]."""
+    windows = find_trajectory(study.config, flight.trajectory).windows
+    return min((SETTLED * window.from_s for window in windows), default=float(flight["time"][-1]))
 
 
 def base_pose(flight: FlightHistory, k: int | slice) -> Matrix:
@@ -158,16 +165,16 @@ def robot_bodies(
         colour = style.PART if piece.part is not None else tuple(0.45 + 0.55 * c for c in piece.colour)
         bodies.append(Body(piece.points @ pose[:3, :3].T + pose[:3, 3], piece.triangles, np.array(colour)))
     for jet, thrust in zip(scene.jets, [] if thrusts is None else thrusts, strict=False):
-        bodies.append(_flame(poses[jet], float(thrust)))
+        bodies.append(_flame(poses[jet], float(thrust) / scene.max_thrust, scene.size))
     return bodies
 
 
-def _flame(pose: Matrix, thrust: float) -> Body:
-    """A cone along the jet's exhaust, the frame's +z, as long as the thrust is large."""
+def _flame(pose: Matrix, share: float, size: float) -> Body:
+    """A cone along the jet's exhaust, the frame's +z, as long as its share of the largest thrust."""
     from trimesh import creation
 
-    length = max(FLAME_LENGTH * thrust / FLAME_THRUST, 1e-3)
-    cone = creation.cone(radius=0.045, height=length, sections=20)
+    length = size * max(FLAME_LENGTH * share, 1e-3)
+    cone = creation.cone(radius=FLAME_RADIUS * size, height=length, sections=20)
     points = np.asarray(cone.vertices) @ pose[:3, :3].T + pose[:3, 3]
     fade = np.clip(np.asarray(cone.vertices)[:, 2:] / length, 0.0, 1.0)
     return Body(
@@ -235,5 +242,7 @@ def _on_screen(view: View, points: Array) -> Array:
 
 def _scale_bar(axes: Any, view: View) -> None:
     left, bottom = -0.72 * view.height, -0.46 * view.height
-    axes.plot([left, left + 1.0], [bottom, bottom], color=style.INK, linewidth=1.2)
-    axes.text(left + 0.5, bottom + 0.01 * view.height, "1 m", ha="center", va="bottom", fontsize=7)
+    length = round_number(0.2 * view.height)
+    axes.plot([left, left + length], [bottom, bottom], color=style.INK, linewidth=1.2)
+    label = f"{length:g} m"
+    axes.text(left + length / 2.0, bottom + 0.01 * view.height, label, ha="center", va="bottom", fontsize=7)

@@ -1,0 +1,91 @@
+"""What the report says of a study is that study's: no word of another robot, groups, loads and materials by name."""
+
+import re
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+import codesign
+from codesign.chain.study import load_study
+from codesign.report.details import flight_history
+from codesign.report.study_words import (
+    density_warning,
+    flight_words,
+    load_words,
+    material_words,
+    objective_quantities,
+    other_density,
+)
+
+PACKAGE = Path(codesign.__file__).parent
+ROBOT_WORDS = (
+    r"ironcub|jetpack|torso|forearm|bracket|chest|humanoid|\barms?\b|\bleg\b|elbow|ergal|\bstruts?\b|gimbal|\b42 s\b|"
+    r"\b42\.0\b"
+)
+WINGS = ("report", "viewer", "chain", "problem", "followup")
+
+
+@pytest.mark.parametrize("wing", WINGS)
+def test_the_engine_speaks_of_no_robot(wing):
+    found = []
+    for path in sorted((PACKAGE / wing).rglob("*")):
+        if path.suffix not in (".py", ".js", ".html", ".css"):
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if (
+                re.search(ROBOT_WORDS, line, re.IGNORECASE)
+                and ">>>" not in line
+                and "`" not in line
+                and "def load_study" not in line
+            ):
+                found.append(f"{path.name}:{number}: {line.strip()}")
+    assert found == []
+
+
+def meanings(study: str) -> dict[str, str]:
+    config = load_study(study).config
+    return {q.key: q.meaning for q in objective_quantities(config.objectives.keys, config)}
+
+
+def test_joint_groups_are_named_with_their_weights():
+    assert "gimbals counted once." in meanings("gimbal_quad")["joint_velocity"]
+    said = meanings("ironcub")["joint_velocity"]
+    assert "torso counted twice, left arm counted once and right arm counted once" in said
+    assert "left leg and right leg not counted" in said
+
+
+def test_momentum_says_what_is_summed():
+    (momentum,) = (q for q in objective_quantities(["momentum"], None))
+    assert momentum.unit == "kg·m/s + kg·m²/s"
+    assert "linear" in momentum.meaning
+    assert "angular" in momentum.meaning
+
+
+def test_a_load_case_names_load_face_and_support():
+    assert load_words(load_study("gimbal_quad").config, "strut").startswith("250\u202fN pressing on seat, mount held")
+
+
+def test_a_density_that_is_not_the_materials_is_said():
+    config = load_study("ironcub").config
+    assert not other_density(config, "jetpack_bracket")
+    assert other_density(config, "forearm_support")
+    assert "4410\u202fkg/m³ instead" in material_words(config, "forearm_support")
+    assert "weighs 63\u202f% of the mass shown" in density_warning(config, "forearm_support")
+    assert "instead" not in material_words(load_study("gimbal_quad").config, "strut")
+
+
+def test_a_flight_is_described_by_its_own_duration_and_step():
+    assert "20\u202fs with 4 jets, simulated in steps of 8\u202fms" in flight_words(load_study("gimbal_quad").config)
+
+
+def test_a_flight_without_counted_joint_groups_has_a_history():
+    rows = 5
+    log = msgspec.defstruct("Log", ["time", "com", "com_reference", "base_rotation", "rotation_reference", "velocity",
+        "joint_velocity_command", "thrust", "base_position", "joint_positions", "qp_iterations", "active_bounds"])(
+        np.arange(rows), np.zeros((rows, 3)), np.zeros((rows, 3)), np.tile(np.eye(3).ravel(), (rows, 1)),
+        np.tile(np.eye(3).ravel(), (rows, 1)), np.zeros((rows, 7)), np.zeros((rows, 1)), np.zeros((rows, 4)),
+        np.zeros((rows, 3)), np.zeros((rows, 1)), np.zeros((rows, 2)), np.zeros(rows))  # fmt: skip
+    history = flight_history(log, "hover", ("a", "b", "c", "d"), ("j",), {})
+    assert history["joint_velocity_error"].shape == (rows, 0)
