@@ -23,6 +23,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism, BRepPrimAPI_MakeRevol
 from OCP.collections import List_TopoDS_Shape
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.GProp import GProp_GProps
+from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
@@ -58,7 +59,7 @@ class Brep:
 
 
 def build_brep(shape: Shape) -> Brep:
-    """Exact solid of a shape.
+    """Exact solid of a shape, without the seams that booleans leave in its faces.
 
     Raises: GeometryError if the result is not one valid closed solid (checked by BRepCheck).
     """
@@ -66,7 +67,7 @@ def build_brep(shape: Shape) -> Brep:
     solids = explore(result.shape, TopAbs_ShapeEnum.TopAbs_SOLID)
     if len(solids) != 1:
         raise GeometryError(f"the shape has {len(solids)} bodies as a B-rep")
-    brep = Brep(solids[0], result.named_faces)
+    brep = _without_seams(Brep(solids[0], result.named_faces))
     if not BRepCheck_Analyzer(brep.shape).IsValid() or brep.volume <= 0.0:
         raise GeometryError("the shape is not a valid solid as a B-rep")
     return brep
@@ -79,6 +80,26 @@ def explore(shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
         found.append(explorer.Current())
         explorer.Next()
     return found
+
+
+def _without_seams(brep: Brep) -> Brep:
+    """The same solid with one face where several of the same name, or without one, lie on one surface."""
+    names = {hash(face): name for face, name in brep.named_faces}  # shapes hash by identity and place
+    beside: dict[int, set[str]] = {}
+    for face in explore(brep.shape, TopAbs_ShapeEnum.TopAbs_FACE):
+        for edge in explore(face, TopAbs_ShapeEnum.TopAbs_EDGE):
+            beside.setdefault(hash(edge), set()).add(names.get(hash(face), ""))
+    unify = ShapeUpgrade_UnifySameDomain(brep.shape, True, True, False)
+    for edge in explore(brep.shape, TopAbs_ShapeEnum.TopAbs_EDGE):
+        if len(beside[hash(edge)]) > 1:  # the border of a named face
+            unify.KeepShape(edge)
+    unify.Build()
+    (solid,) = explore(unify.Shape(), TopAbs_ShapeEnum.TopAbs_SOLID)
+    united: dict[int, tuple[TopoDS_Shape, str]] = {}
+    for face, name in brep.named_faces:
+        for piece in list(unify.History().Modified(face)) or [face]:
+            united[hash(piece)] = (piece, name)
+    return Brep(solid, tuple(united.values()))
 
 
 def _evaluate(shape: Shape) -> Brep:

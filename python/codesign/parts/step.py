@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
@@ -15,13 +16,16 @@ from OCP.gp import gp_Trsf
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
+from OCP.StepBasic import StepBasic_ProductDefinitionFormation
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
+from OCP.STEPConstruct import STEPConstruct
 from OCP.STEPControl import STEPControl_StepModelType
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
@@ -36,6 +40,14 @@ from codesign.parts.part import MirroredPart, Part
 from codesign.units import MILLIMETRE
 
 SCHEMAS = {"AP214": "AP214IS", "AP242": "AP242DIS"}
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a STEP file comes from: `revision` is the version of its products, `organization` stands in its header."""
+
+    revision: str = ""
+    organization: str = ""
 
 
 def part_breps(parts: Sequence[Part]) -> dict[Part, Brep]:
@@ -53,11 +65,17 @@ def part_breps(parts: Sequence[Part]) -> dict[Part, Brep]:
     return {part: brep(part) for part in parts}
 
 
-def write_step(part: Part, path: str | os.PathLike[str], schema: str = "AP242", brep: Brep | None = None) -> None:
+def write_step(
+    part: Part,
+    path: str | os.PathLike[str],
+    schema: str = "AP242",
+    brep: Brep | None = None,
+    origin: Origin = Origin(),
+) -> None:
     """One part as a solid with its name and the names of its faces. `brep`: its exact solid, if already built."""
     document = _Document()
     document.add_part(part.name, brep or part_breps([part])[part])
-    document.write(path, schema)
+    document.write(path, schema, origin)
 
 
 def write_step_assembly(
@@ -66,13 +84,14 @@ def write_step_assembly(
     name: str = "assembly",
     schema: str = "AP242",
     breps: Mapping[Part, Brep] | None = None,
+    origin: Origin = Origin(),
 ) -> None:
     """Placed parts as one assembly; components that share a part share its solid. `breps`: from `part_breps`."""
     breps = breps or part_breps(distinct_parts(components))
     document = _Document()
     labels = {part: document.add_part(part.name, breps[part]) for part in distinct_parts(components)}
     document.add_assembly(name, [(c.name, labels[c.part], c.pose) for c in components])
-    document.write(path, schema)
+    document.write(path, schema, origin)
 
 
 class _Document:
@@ -82,11 +101,13 @@ class _Document:
         self._document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
         XCAFApp_Application.GetApplication_s().InitDocument(self._document)
         self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(self._document.Main())
+        self._solids: list[tuple[TopoDS_Shape, str]] = []
 
     def add_part(self, name: str, brep: Brep) -> TDF_Label:
         """A product made of one solid."""
         label = self._shapes.AddShape(brep.shape, False)
         _set_name(label, name)
+        self._solids.append((brep.shape, name))
         for face, face_name in brep.named_faces:
             _set_name(self._shapes.AddSubShape(label, face), face_name)
         return label
@@ -103,7 +124,7 @@ class _Document:
             _set_name(self._shapes.AddComponent(assembly, part, TopLoc_Location(motion)), component_name)
         self._shapes.UpdateAssemblies()
 
-    def write(self, path: str | os.PathLike[str], schema: str) -> None:
+    def write(self, path: str | os.PathLike[str], schema: str, origin: Origin) -> None:
         """Writes the file whole or not at all."""
         if schema not in SCHEMAS:
             raise ValueError(f"schema = {schema!r}: must be one of {', '.join(SCHEMAS)}")
@@ -116,17 +137,34 @@ class _Document:
             writer.SetNameMode(True)
             if not writer.Transfer(self._document, STEPControl_StepModelType.STEPControl_AsIs):
                 raise GeometryError(f"{path}: OpenCASCADE could not translate the shape to STEP")
+            self._name_solids(writer)
+            _set_revision(writer, origin.revision)
             header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
             header.SetName(TCollection_HAsciiString(Path(path).name))
             header.SetOriginatingSystem(TCollection_HAsciiString(f"codesign {__version__}"))
             header.SetAuthorValue(1, TCollection_HAsciiString(""))
-            header.SetOrganizationValue(1, TCollection_HAsciiString(""))
+            header.SetOrganizationValue(1, TCollection_HAsciiString(origin.organization))
             if writer.Write(os.fspath(temporary)) != IFSelect_ReturnStatus.IFSelect_RetDone:
                 raise OSError(f"{path}: OpenCASCADE could not write the STEP file")
 
+    def _name_solids(self, writer: STEPCAFControl_Writer) -> None:
+        """Gives the solids themselves the names of their products: OpenCASCADE names the products only."""
+        finder = writer.ChangeWriter().WS().TransferWriter().FinderProcess()
+        for solid, name in self._solids:
+            STEPConstruct.FindEntity_s(finder, solid).SetName(TCollection_HAsciiString(name))
+
+
+def _set_revision(writer: STEPCAFControl_Writer, revision: str) -> None:
+    """The version of every product in the file."""
+    model = writer.ChangeWriter().Model()
+    for number in range(1, model.NbEntities() + 1):
+        entity = model.Value(number)
+        if isinstance(entity, StepBasic_ProductDefinitionFormation):
+            entity.SetId(TCollection_HAsciiString(revision))
+
 
 def _set_name(label: TDF_Label, name: str) -> None:
-    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # from UTF-8
 
 
 @contextmanager

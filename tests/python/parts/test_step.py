@@ -1,6 +1,7 @@
 """STEP files: read back with OpenCASCADE and with gmsh; silence; nothing half-written."""
 
 from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -21,9 +22,10 @@ from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from codesign.geometry.brep import Brep, build_brep, explore
+from codesign.geometry.shape import Shape, box
 from codesign.parts.component import Component
 from codesign.parts.part import Part
-from codesign.parts.step import write_step_assembly
+from codesign.parts.step import Origin, write_step_assembly
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -31,6 +33,14 @@ BRACKET, FOREARM = JetpackBracket(15, 42), ForearmJetSupport(80, 108)
 RIGHT_FOREARM = FOREARM.mirrored("z", "r_forearm_support")
 ANALYTIC = {Kind.GeomAbs_Plane, Kind.GeomAbs_Cylinder, Kind.GeomAbs_Cone, Kind.GeomAbs_Torus}
 PARTS: list[Part] = [BRACKET, JetpackBracket(79, 100), JetpackBracket(37, 78), FOREARM, RIGHT_FOREARM]
+
+
+@dataclass(frozen=True)
+class Hollow(Part):
+    """A box in a box."""
+
+    def shape(self) -> Shape:
+        return box((0, 0, 0), (20, 20, 20), z0="fußplatte") - box((5, 5, 5), (15, 15, 15))
 
 
 class StepFile:
@@ -80,6 +90,48 @@ def test_part_read_back_is_a_valid_exact_named_solid(part: Part, tmp_path: Path)
     names = Counter(name_of(labels.Value(k + 1)) for k in range(labels.Length()))
     assert set(names) == set(part.faces)
     assert names["seat"] == 1
+
+
+@pytest.mark.parametrize(("part", "faces"), [(BRACKET, 42), (FOREARM, 55), (RIGHT_FOREARM, 55)], ids=str)
+def test_faces_have_no_seams_and_solids_have_names(part: Part, faces: int, tmp_path: Path) -> None:
+    part.write_step(tmp_path / "part.step")
+    text = (tmp_path / "part.step").read_text()
+    assert text.count("ADVANCED_FACE(") == faces
+    assert f"MANIFOLD_SOLID_BREP('{part.name}'," in text
+
+
+def test_faces_of_two_names_stay_two() -> None:
+    """Two slabs side by side make one top face, unless their tops have names of their own."""
+
+    def slabs(first: str, second: str) -> Brep:
+        return build_brep(box((0, 0, 0), (10, 10, 5), z1=first) + box((10, 0, 0), (20, 10, 5), z1=second))
+
+    for first, second, count in (("", "", 6), ("top", "top", 6), ("top", "", 7), ("left", "right", 7)):
+        brep = slabs(first, second)
+        assert len(explore(brep.shape, TopAbs_ShapeEnum.TopAbs_FACE)) == count
+        assert brep.volume == pytest.approx(1000.0, rel=1e-12)
+        present = sorted(name for _, name in brep.named_faces)
+        assert present == sorted({first, second} - {""})
+        if first:
+            assert brep.area(first) == pytest.approx(200.0 if first == second else 100.0, rel=1e-12)
+
+
+def test_cavity_origin_and_names_in_any_language(tmp_path: Path) -> None:
+    part = Hollow(name="träger's 箱", density=1000.0)
+    component = Component("links, groß", part, np.eye(4))
+    write_step_assembly([component], tmp_path / "a.step", "gerät", origin=Origin("rev 7", "workshop"))
+    text = (tmp_path / "a.step").read_text()
+    assert "BREP_WITH_VOIDS('träger''s 箱'," in text
+    assert text.count("PRODUCT_DEFINITION_FORMATION('rev 7',") == 2
+    assert "('workshop')" in text
+    file = StepFile(tmp_path / "a.step")
+    (root,) = file.roots()
+    assert name_of(root) == "gerät"
+    (placed,) = components_of(root)
+    assert name_of(placed) == "links, groß"
+    (solid,) = explore(XCAFDoc_ShapeTool.GetShape_s(placed), TopAbs_ShapeEnum.TopAbs_SOLID)
+    assert Brep(solid).volume == pytest.approx(7000.0, rel=1e-9)
+    assert len(explore(solid, TopAbs_ShapeEnum.TopAbs_SHELL)) == 2
 
 
 def test_named_faces_of_the_file_have_the_exact_area() -> None:
