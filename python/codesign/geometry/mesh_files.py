@@ -9,12 +9,14 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 import numpy.typing as npt
 
+from codesign import __version__
 from codesign.files import write_bytes
+from codesign.geometry.plate import lay_out
 from codesign.geometry.profile import Vector
 from codesign.geometry.solid import Solid
 from codesign.units import MILLIMETRE
@@ -33,19 +35,39 @@ def write_stl(solid: Solid, path: str | os.PathLike[str], title: str = "") -> No
     write_bytes(Path(path), header + np.uint32(len(records)).tobytes() + records.tobytes())
 
 
-def write_3mf(solids: Mapping[str, Solid], path: str | os.PathLike[str]) -> None:
-    """3MF in mm with one named object per solid, each where it was modelled."""
-    objects, items = [], []
+def write_3mf(
+    solids: Mapping[str, Solid],
+    path: str | os.PathLike[str],
+    counts: Mapping[str, int] | None = None,
+    title: str = "",
+) -> None:
+    """3MF in mm with one named object per solid; its copies lie side by side on the plane z = 0, turned as modelled.
+
+    counts: how many of each are wanted; one if absent. title: of the whole file.
+    """
+    counts = counts or {}
+    resources, items = [], []
+    copies = [(number, name) for number, name in enumerate(solids, start=1) for _ in range(counts.get(name, 1))]
+    low = {name: solid.points.min(axis=0) for name, solid in solids.items()}
+    size = {name: solid.points.max(axis=0) - low[name] for name, solid in solids.items()}
+    corners = lay_out([(float(size[name][0]), float(size[name][1])) for _, name in copies])
     for number, (name, solid) in enumerate(solids.items(), start=1):
         vertices = "".join(f'<vertex x="{x:.7g}" y="{y:.7g}" z="{z:.7g}"/>' for x, y, z in solid.points.tolist())
         triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in solid.triangles.tolist())
         mesh = f"<mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh>"
-        objects.append(f'<object id="{number}" name={quoteattr(name)} type="model">{mesh}</object>')
-        items.append(f'<item objectid="{number}"/>')
+        resources.append(f'<object id="{number}" name={quoteattr(name)} type="model">{mesh}</object>')
+    for (number, name), corner in zip(copies, corners, strict=True):
+        x, y, z = np.array([*corner, 1e-4]) - low[name]  # above the plane whatever the rounding of the vertices
+        items.append(f'<item objectid="{number}" transform="1 0 0 0 1 0 0 0 1 {x:.7g} {y:.7g} {z:.7g}"/>')
+    metadata = "".join(
+        f'<metadata name="{name}">{escape(text)}</metadata>'
+        for name, text in (("Title", title), ("Application", f"codesign {__version__}"))
+        if text
+    )
     model = (
         '<?xml version="1.0" encoding="UTF-8"?>'
         '<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
-        f"<resources>{''.join(objects)}</resources><build>{''.join(items)}</build></model>"
+        f"{metadata}<resources>{''.join(resources)}</resources><build>{''.join(items)}</build></model>"
     )
     types = (
         '<?xml version="1.0" encoding="UTF-8"?>'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,8 +15,8 @@ from codesign.parts.part import EXPORT_RESOLUTION
 def export_parts(components: Sequence[Component], folder: str | os.PathLike[str], schema: str = "AP242") -> list[Path]:
     """Writes the files of placed parts into `folder` (made if absent); returns their paths.
 
-    NAME.stl and NAME.step (mm) of every distinct part, parts.3mf (mm) with all of them, assembly.step (mm) and
-    assembly.glb (m) with every component in its place.
+    NAME.stl and NAME.step (mm) of every distinct part, parts.3mf (mm) with all components side
+    by side, assembly.step (mm) and assembly.glb (m) with every component in its place.
 
     Raises: GeometryError if a part cannot be built; ValueError if two different parts share a name.
     """
@@ -34,7 +35,7 @@ def export_parts(components: Sequence[Component], folder: str | os.PathLike[str]
         write_stl(solids[name], files[-2], part.title)
         write_step(part, files[-1], schema, breps[part])
     files += [folder / "parts.3mf", folder / "assembly.glb", folder / "assembly.step"]
-    write_3mf(solids, files[-3])
+    write_3mf(solids, files[-3], Counter(component.part.name for component in components))
     write_glb(solids, [(c.name, c.part.name, c.pose) for c in components], files[-2])
     write_step_assembly(components, files[-1], schema=schema, breps=breps)
     return files

@@ -1,12 +1,17 @@
 """Exported files load where they are used; numbers and places are right."""
 
+import itertools
 import json
+import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
+import manifold3d
 import numpy as np
 import pytest
 import trimesh
 
+from codesign.geometry.plate import lay_out
 from codesign.parts.cad_export import export_parts
 from codesign.parts.component import Component
 from codesign.studies.ironcub.bracket import JetpackBracket
@@ -69,13 +74,53 @@ def test_glb_places_all_components_in_metres_with_y_up(folder: Path) -> None:
     assert json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])["asset"]["version"] == "2.0"
 
 
-def test_3mf_holds_every_part_once_in_millimetres(folder: Path) -> None:
-    pytest.importorskip("lxml")
-    scene = trimesh.load(folder / "parts.3mf")
-    volumes = sorted(mesh.volume for mesh in scene.geometry.values())
-    expected = sorted([BRACKET.mass_properties().volume * 1e9, *[FOREARM.mass_properties().volume * 1e9] * 2])
-    np.testing.assert_allclose(volumes, expected, rtol=1e-3)
-    assert all(mesh.is_watertight for mesh in scene.geometry.values())
+def read_3mf(path: Path) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Name, placed points [mm] and triangles of every item on the plate."""
+    core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+    with zipfile.ZipFile(path) as package:
+        model = ElementTree.fromstring(package.read("3D/3dmodel.model"))
+    assert model.get("unit") == "millimeter"
+    objects = {}
+    for element in model.iter(f"{core}object"):
+        points = np.array([[float(v.get(axis)) for axis in "xyz"] for v in element.iter(f"{core}vertex")])
+        triangles = np.array([[int(t.get(f"v{k}")) for k in (1, 2, 3)] for t in element.iter(f"{core}triangle")])
+        objects[element.get("id")] = (element.get("name"), points, triangles)
+    items = []
+    for item in model.iter(f"{core}item"):
+        name, points, triangles = objects[item.get("objectid")]
+        matrix = np.array(item.get("transform").split(), dtype=float).reshape(4, 3)
+        np.testing.assert_array_equal(matrix[:3], np.eye(3))
+        items.append((name, points + matrix[3], triangles))
+    return items
+
+
+def test_3mf_is_a_plate_with_all_that_the_design_needs(folder: Path) -> None:
+    items = read_3mf(folder / "parts.3mf")
+    assert [name for name, _, _ in items] == ["jetpack_bracket"] * 2 + ["forearm_support", "r_forearm_support"]
+    bodies = []
+    for name, points, triangles in items:
+        part = FOREARM if "forearm" in name else BRACKET
+        body = manifold3d.Manifold(manifold3d.Mesh64(points, triangles.astype(np.uint64)))
+        assert body.volume() == pytest.approx(part.mass_properties().volume * 1e9, rel=1e-3)
+        assert 0.0 <= points[:, 2].min() < 1e-3
+        bodies.append(body)
+    for one, other in itertools.combinations(bodies, 2):
+        assert (one ^ other).is_empty()
+        assert one.min_gap(other, 10.0) >= 5.0
+    model = zipfile.ZipFile(folder / "parts.3mf").read("3D/3dmodel.model").decode()
+    assert model.count("<object ") == 3  # the two brackets share one
+
+
+def test_rectangles_are_laid_out_apart_and_compactly() -> None:
+    sizes = [(float(w), float(d)) for w, d in np.random.default_rng(0).integers(1, 60, (40, 2))]
+    corners = lay_out(sizes, gap=2.0)
+    for (a, s), (b, t) in itertools.combinations(list(zip(corners, sizes, strict=True)), 2):
+        assert any(a[i] + s[i] + 2.0 <= b[i] or b[i] + t[i] + 2.0 <= a[i] for i in (0, 1))
+    ends = np.array(corners) + np.array(sizes)
+    assert np.min(corners) == 0.0
+    assert np.prod(ends.max(axis=0)) < 1.4 * sum((w + 2) * (d + 2) for w, d in sizes)
+    assert lay_out([]) == []
+    assert lay_out([(300.0, 10.0), (5.0, 5.0)]) == [(0.0, 0.0), (0.0, 15.0)]
 
 
 def test_two_parts_of_one_name_are_refused(tmp_path: Path) -> None:
