@@ -17,6 +17,8 @@ from codesign.geometry.tessellate import Indices
 SHORTEST_EDGE = 0.05  # mm
 SMALLEST_HEIGHT = 0.002  # mm, of a triangle
 Place = list[float]  # (3,) mm; plain numbers are faster than arrays for a handful of triangles
+_PASSES = 8
+_SAME_PLANE = 0.9998  # cosine between the normals before and after a flip, about a degree
 _KEPT_DIRECTION = 0.5  # cosine by which the normal of a triangle may turn when a tiny edge beside it goes
 
 
@@ -27,10 +29,11 @@ def tidy(points: Vector, triangles: Indices, face: Indices) -> tuple[Vector, Ind
     tearing or folding the surface stay.
     """
     surface = _Surface(points, triangles, face)
-    for start, end in surface.short_edges():
-        surface.shrink(start, end)
-    for triangle in surface.flat_triangles():
-        surface.flip(triangle)
+    for _ in range(_PASSES):  # what goes can make its neighbours short or flat
+        shrunk = [surface.shrink(start, end) for start, end in surface.short_edges()]
+        flipped = [surface.flip(triangle) for triangle in surface.flat_triangles()]
+        if not any(shrunk + flipped):
+            break
     return surface.result()
 
 
@@ -55,7 +58,8 @@ class _Surface:
 
     def short_edges(self) -> list[tuple[int, int]]:
         """Edges below the tolerance, shortest first."""
-        edges = np.concatenate([self.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+        alive = self.triangles[self.alive]
+        edges = np.concatenate([alive[:, [k, (k + 1) % 3]] for k in range(3)])
         edges = edges[edges[:, 0] < edges[:, 1]]
         squared = ((self.points[edges[:, 1]] - self.points[edges[:, 0]]) ** 2).sum(axis=1)
         short = np.flatnonzero(squared < SHORTEST_EDGE**2)
@@ -93,14 +97,14 @@ class _Surface:
         corners = self._corners(triangle)
         return corners, [self._place(v) for v in corners]
 
-    def shrink(self, first: int, second: int) -> None:
-        """Moves one end of an edge onto the other, if that folds nothing."""
+    def shrink(self, first: int, second: int) -> bool:
+        """Moves one end of an edge onto the other, if that folds nothing. Returns: whether it did."""
         shared = self._fan[first] & self._fan[second]
         if len(shared) != 2 or math.dist(self._place(first), self._place(second)) >= SHORTEST_EDGE:
-            return
+            return False
         neighbours = [{v for triangle in self._fan[end] for v in self._corners(triangle)} for end in (first, second)]
         if len(neighbours[0] & neighbours[1]) != 4:  # the ends and one point on each side
-            return
+            return False
         choices = []
         for gone, kept in ((first, second), (second, first)):
             target = self._place(kept)
@@ -113,7 +117,7 @@ class _Surface:
                 swept = sum(abs(_volume(before, target)) for before, _ in moves)  # what the move changes at most
                 choices.append((swept, gone, kept))
         if not choices:
-            return
+            return False
         _, gone, kept = min(choices)
         around = sorted(self._fan[gone])
         self.alive[list(shared)] = False
@@ -122,32 +126,37 @@ class _Surface:
         self._fan[gone] = set()
         for fan in self._fan.values():
             fan -= shared
+        return True
 
-    def flip(self, flat: int) -> None:
-        """Gives a flat triangle and its neighbour over its longest edge the other diagonal, if they share a plane."""
+    def flip(self, flat: int) -> bool:
+        """Gives a flat triangle and its neighbour over its longest edge the other diagonal, if they share a plane.
+
+        The surface moves by less than the height of the flat triangle. Returns: whether it did.
+        """
         corners = self._corners(flat)
         sides = [math.dist(self._place(corners[k]), self._place(corners[k - 2])) for k in range(3)]
         k = sides.index(max(sides))
         a, b, tip = (corners[(k + i) % 3] for i in range(3))
         others = (self._fan[a] & self._fan[b]) - {flat}
         if len(others) != 1:
-            return
+            return False
         (other,) = others
         if self.face[other] != self.face[flat]:
-            return
+            return False
         (opposite,) = set(self._corners(other)) - {a, b}
         if any(opposite in self._corners(triangle) for triangle in self._fan[tip]):
-            return
+            return False
         new = [[tip, a, opposite], [opposite, b, tip]]
         before = _normal(self._corners_and_places(other)[1])
-        if min(_dot(_normal([self._place(v) for v in corners]), before) for corners in new) < 1.0 - 1e-9:
-            return
+        if min(_dot(_normal([self._place(v) for v in corners]), before) for corners in new) < _SAME_PLANE:
+            return False
         self.triangles[[flat, other]] = new
         self._fan[a].discard(other)
         self._fan[b].discard(flat)
         self._fan[tip].add(other)
         if opposite in self._fan:
             self._fan[opposite].add(flat)
+        return True
 
     def result(self) -> tuple[Vector, Indices, Indices]:
         """Points in use, triangles and faces."""

@@ -7,7 +7,7 @@ from codesign.geometry.mass import volume_moments
 from codesign.geometry.profile import Resolution
 from codesign.geometry.solid import build_solid
 from codesign.geometry.tidy import tidy
-from codesign.parts.part import Part
+from codesign.parts.part import EXPORT_RESOLUTION, Part
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -17,6 +17,7 @@ AWKWARD = [
     (JetpackBracket(62, 60), Resolution(48)),
     (ForearmJetSupport(116, 92), Resolution(48)),
     (JetpackBracket(19.65441687750465, 78.32381594200193), Resolution(76, chord_mm=0.012)),
+    (ForearmJetSupport(80, 108), EXPORT_RESOLUTION),
 ]
 
 
@@ -43,7 +44,7 @@ def test_awkward_designs_come_out_clean(part: Part, resolution: Resolution) -> N
     assert set(map(tuple, directed.tolist())) == set(map(tuple, directed[:, ::-1].tolist()))  # closed
     assert len(np.unique(directed, axis=0)) == len(directed)  # every edge once in each direction
     assert edge_lengths(points, triangles).min() >= 0.05
-    assert triangle_heights(points, triangles).min() >= 0.001
+    assert triangle_heights(points, triangles).min() >= 0.002
     assert volume_moments(points, triangles)[0] == pytest.approx(volume_moments(raw.points, raw.triangles)[0], rel=2e-5)
     assert set(face) == set(raw.face)
 
