@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from codesign.robot.clearance import convex_pieces, flown_interference
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
 from codesign.study.config import StudyConfig
+from codesign.study.parts import make_part
 from codesign.transforms import Matrix
 from codesign.units import GIGA, MEGA, MILLIMETRE
 
@@ -118,13 +119,7 @@ def _evaluate(
 def build_parts(study: StudyData, design: Mapping[str, float], config: StudyConfig | None = None) -> dict[str, Part]:
     """Parts of a design by name."""
     config = config or study.configured(design)
-    parts = {}
-    for part in config.parts:
-        make: Callable[..., Part] = study.part_classes[part.name]
-        parameters = {parameter: design[variable] for parameter, variable in part.parameters.items()}
-        density = part.density_kg_m3 or config.materials[part.material].density_kg_m3
-        parts[part.name] = make(**parameters, **part.options, density=density)
-    return parts
+    return {part.name: make_part(part, config, study.part_classes[part.name], design) for part in config.parts}
 
 
 def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:

@@ -40,8 +40,9 @@ def objective_parts(log: dyn.FlightLog, family: str, config: StudyConfig) -> dic
     """What the members of an objective family are made of: momenta, and each joint group that counts."""
     parts = getattr(log, f"{family}_parts")
     groups = [group.name for group in config.flight.joint_groups if group.velocity_weight > 0]
-    return {
+    named = {
         "linear_momentum": parts.linear_momentum,
         "angular_momentum": parts.angular_momentum,
         **dict(zip(groups, parts.joint_velocity, strict=True)),
     }
+    return {name: value for name, value in named.items() if math.isfinite(value)}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,8 +17,9 @@ if TYPE_CHECKING:
     from codesign.problem.evaluation import Evaluation
     from codesign.storage.runs import Run
 
-out = Console()
-err = Console(stderr=True)
+# What is printed holds paths and texts of users: square brackets and colons in them are no markup.
+out = Console(markup=False, emoji=False)
+err = Console(markup=False, emoji=False, stderr=True)
 
 
 def print_json(document: Any) -> None:
@@ -25,10 +27,18 @@ def print_json(document: Any) -> None:
     sys.stdout.write(json.dumps(document, indent=1, allow_nan=False) + "\n")
 
 
+def shown(value: Any, digits: int = 6) -> str:
+    """A value of a document as text; None is a number that was not measured, or not finite."""
+    if value is None:
+        return "-"
+    return f"{value:.{digits}g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
+
+
 def print_evaluation(evaluation: Evaluation) -> None:
     """Text summary of one evaluation."""
     colour = {"feasible": "green", "infeasible": "yellow", "failed": "red"}[evaluation.status]
-    out.print(f"[bold {colour}]{evaluation.status}[/]  " + "  ".join(f"{k}={v}" for k, v in evaluation.design.items()))
+    design = "  ".join(f"{name}={value}" for name, value in evaluation.design.items())
+    out.print(Text.assemble((evaluation.status, f"bold {colour}"), f"  {design}"))
     if evaluation.reason:
         out.print(evaluation.reason)
     table = Table(show_header=False, box=None, pad_edge=False)
@@ -43,7 +53,7 @@ def print_evaluation(evaluation: Evaluation) -> None:
         )
     for key in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust"):
         if key in evaluation.flight:
-            table.add_row(f"flight {key}", f"{evaluation.flight[key]:.4g}")
+            table.add_row(f"flight {key}", shown(evaluation.flight[key], 4))
     table.add_row("seconds", "  ".join(f"{k} {v:.2f}" for k, v in evaluation.seconds.items()))
     out.print(table)
 
@@ -73,7 +83,8 @@ def print_run(run: Run, as_json: bool) -> int:
         print_json(summary | {"front": [evaluation.to_dict() for evaluation in front]})
     else:
         counts = "  ".join(f"{status} {count}" for status, count in summary["statuses"].items())
-        out.print(f"[bold]{run.out}[/]: {summary['designs']} designs ({counts}) in {summary['seconds']:.1f} s")
+        told = f": {summary['designs']} designs ({counts}) in {summary['seconds']:.1f} s"
+        out.print(Text.assemble((str(run.out), "bold"), told))
         table = Table(title=f"Pareto front, {len(front)} designs", title_justify="left")
         rows = sorted(front, key=lambda evaluation: list(evaluation.objectives.values()))
         for evaluation in rows[:20]:

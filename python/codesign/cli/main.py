@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.table import Table
+from rich.text import Text
 
 from codesign.cli.console import (
     err,
@@ -22,6 +23,7 @@ from codesign.cli.console import (
     print_json,
     print_run,
     print_stress,
+    shown,
 )
 from codesign.errors import CodesignError, DesignError, StudyError
 
@@ -106,7 +108,7 @@ def fly(
             for key, value in values.items():
                 table.add_row(f"{family} {key}", f"{value:.8g}")
         for key, value in result["flight"].items():
-            table.add_row(key, str(value) if isinstance(value, str) else f"{value:.6g}")
+            table.add_row(key, shown(value))
         out.print(table)
     return 0 if result["status"] == "completed" else 1
 
@@ -369,7 +371,7 @@ def main() -> None:
     except CodesignError as error:
         if "--json" in sys.argv:
             print_json({"error": {"type": type(error).__name__, "message": str(error)}})
-        err.print(f"[bold red]{type(error).__name__}[/]: {error}", highlight=False)
+        err.print(Text.assemble((type(error).__name__, "bold red"), f": {error}"), soft_wrap=True)
         code = 2
     except typer.Exit as stop:
         code = stop.exit_code

@@ -85,7 +85,7 @@ class DaskExecutor:
         try:
             distributed: Any = importlib.import_module("distributed")
         except ImportError as error:
-            raise ExecutionError("a cluster needs dask[distributed]: pip install codesign[cluster]") from error
+            raise ExecutionError("a cluster needs dask[distributed]: pip install 'codesign[cluster]'") from error
         self._job = Job(uuid.uuid4().hex, study, limits, str(cache or ""), socket.gethostname())
         self._arrived: queue.SimpleQueue[tuple[Task, Any]] = queue.SimpleQueue()
         self._futures: dict[int, Any] = {}

@@ -143,4 +143,4 @@ def _salib(module: str) -> Any:
     try:
         return importlib.import_module(f"SALib.{module}")
     except ImportError as error:
-        raise ExecutionError("sensitivity needs SALib: pip install codesign[analysis]") from error
+        raise ExecutionError("sensitivity needs SALib: pip install 'codesign[analysis]'") from error

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from codesign import _core, fem
+from codesign.errors import StudyError
+from codesign.names import nearest
 
 if TYPE_CHECKING:
     from codesign.parts.part import Part
@@ -72,6 +74,10 @@ def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     loads = []
     for load in settings.loads:
+        if load.face not in surface.face_names:
+            raise StudyError(
+                f"{part.name}: no face {load.face!r}; {nearest(load.face, filter(None, surface.face_names))}"
+            )
         on_face = surface.face == surface.face_names.index(load.face)
         direction = -normals[on_face].sum(axis=0)
         force = load.force * direction / np.linalg.norm(direction)

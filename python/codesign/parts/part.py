@@ -8,7 +8,7 @@ import os
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY, dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 from codesign.errors import GeometryError
 from codesign.geometry.mass import MassProperties, extrapolate, mass_properties, settled, volume_moments
@@ -50,7 +50,13 @@ class Part(ABC):
     """Base of all parts; a subclass is a frozen dataclass with parameters and a `shape()`. Lengths in mm inside it.
 
     name: of the part in studies and files.   density: [kg/m³].
+    load_variants, support_variants: values of a study's `[fem] load` and `support` that the class knows (a class with
+    its own `stress_case` may know more). most_loads: how many loads it takes; None: any number.
     """
+
+    load_variants: ClassVar[tuple[str, ...]] = ("uniform",)
+    support_variants: ClassVar[tuple[str, ...]] = ("published",)
+    most_loads: ClassVar[int | None] = None
 
     _: KW_ONLY
     name: str
@@ -70,7 +76,7 @@ class Part(ABC):
         """The part as an expression of the part language, in mm."""
 
     def fem_shape(self, geometry: str = "simplified") -> Shape:
-        """The shape to be analysed: "full", or or "simplified" without what hardly matters for stress."""
+        """The shape to be analysed: "full", or "simplified" without features that hardly affect stress."""
         if geometry not in ("full", "simplified"):
             raise ValueError(f"geometry = {geometry!r}: must be 'full' or 'simplified'")
         return self.shape()

@@ -144,7 +144,11 @@ class ReportData:
     def gain(self, position: int) -> Matrix | None:
         """Relative change (m,) of each objective from the baseline to an entry: negative is better."""
         vector = self.baseline_vector
-        return None if vector is None else (self.values[position] - vector) / np.abs(vector)
+        if vector is None:
+            return None
+        difference = self.values[position] - vector
+        with np.errstate(divide="ignore"):
+            return np.divide(difference, np.abs(vector), out=np.zeros_like(difference), where=difference != 0.0)
 
     def find(self, design: Evaluation) -> int | None:
         """Position of an evaluation's design among the entries."""

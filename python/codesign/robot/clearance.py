@@ -38,10 +38,10 @@ class PlumeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     jets: tuple[str, ...] = ()
-    half_angle_deg: float = 11.8
-    radius_mm: float = 34.0
-    start_mm: float = 5.0
-    length_mm: float = 1000.0
+    half_angle_deg: Annotated[float, msgspec.Meta(ge=0, lt=90)] = 11.8
+    radius_mm: Annotated[float, msgspec.Meta(gt=0)] = 34.0
+    start_mm: Annotated[float, msgspec.Meta(ge=0)] = 5.0
+    length_mm: Annotated[float, msgspec.Meta(gt=0)] = 1000.0
 
 
 class InterferenceSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -55,9 +55,9 @@ class InterferenceSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=Tr
     bodies: tuple[str, ...]
     ignore: tuple[tuple[str, str], ...] = ()
     plumes: PlumeSettings = PlumeSettings()
-    report_below_mm: float = 50.0
-    postures: Annotated[int, msgspec.Meta(ge=1)] = 50
-    slices: Annotated[int, msgspec.Meta(ge=1)] = 8
+    report_below_mm: Annotated[float, msgspec.Meta(gt=0)] = 50.0
+    postures: Annotated[int, msgspec.Meta(ge=1, le=100_000)] = 50
+    slices: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 8
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,9 @@ class ProgressBar:
         from rich.progress import Progress as Display
 
         text = TextColumn("{task.fields[state]}")
-        self._display = Display(TextColumn(f"[bold]{title}"), BarColumn(None), text, console=Console(stderr=True))
+        self._display = Display(
+            TextColumn(title, style="bold", markup=False), BarColumn(None), text, console=Console(stderr=True)
+        )
         self._task = self._display.add_task(title, total=None, state="starting workers")
         self._interval, self._shown = interval, 0.0
         self._last: Progress | None = None

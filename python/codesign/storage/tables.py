@@ -78,7 +78,7 @@ def _write_parquet(rows: list[dict[str, Any]], path: Path) -> None:
         import pyarrow
         from pyarrow import parquet
     except ImportError as error:
-        raise StoreError("Parquet needs the package pyarrow: pip install codesign[analysis]") from error
+        raise StoreError("Parquet needs the package pyarrow: pip install 'codesign[analysis]'") from error
     columns = {name: _column([row[name] for row in rows]) for name in rows[0]} if rows else {}
     parquet.write_table(pyarrow.table(columns), path)
 

@@ -1,90 +1,108 @@
-"""Cross-references and bounds of a study that types cannot express."""
+"""What is wrong with a study beyond the types of its values: bounds, cross-references, names.
+
+Every check yields pairs (key, reason); a loader raises the first, `codesign check` shows all.
+"""
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 
-from codesign.errors import StudyError
+from codesign.names import nearest
 from codesign.parts.part import Part, parameter_units
-from codesign.problem.quantities import QUANTITIES
-from codesign.study.config import StudyConfig
+from codesign.problem.quantities import QUANTITIES, REDUCTIONS
+from codesign.study.config import LimitConfig, PartConfig, StudyConfig, VariableConfig
 
 MOST_OBJECTIVES = 6
+MOST_LEVELS = 1_000_000  # grid values of a variable
+
+Problem = tuple[str, str]
 
 
-def check_study(config: StudyConfig, part_classes: Mapping[str, type[Part]], path: Path) -> None:
-    """Cross-references and bounds that types cannot express; raises StudyError with file, key and reason."""
-
-    def refuse(key: str, reason: str) -> None:
-        raise StudyError(f"{path}: {key}: {reason}")
-
-    if not config.variables:
-        refuse("variables", "a study needs at least one design variable")
-    for name, variable in config.variables.items():
-        if variable.maximum <= variable.minimum:
-            refuse(f"variables.{name}", f"max = {variable.maximum:g} must be above min = {variable.minimum:g}")
-        steps = (variable.maximum - variable.minimum) / variable.step
-        if abs(steps - round(steps)) > 1e-6:
-            refuse(f"variables.{name}.step", f"{variable.step:g} does not divide max - min into whole steps")
-    names = [part.name for part in config.parts]
-    if len(set(names)) != len(names):
-        refuse("parts", f"two parts have the name {next(n for n in names if names.count(n) > 1)!r}")
+def reference_problems(config: StudyConfig, part_classes: Mapping[str, type[Part]]) -> Iterator[Problem]:
+    """Everything outside of [flight] that can be judged from the file and the part classes alone."""
+    yield from _variable_problems(config)
+    if not config.parts:
+        yield "parts", "a study needs at least one part"
+    if twice := repeated(part.name for part in config.parts):
+        yield "parts", f"two parts have the name {twice!r}"
     for part in config.parts:
-        key = f"parts.{part.name}"
-        if part.material not in config.materials:
-            refuse(f"{key}.material", f"{part.material!r} is not in [materials]: {', '.join(config.materials)}")
-        units = parameter_units(part_classes[part.name])
-        if set(part.parameters) != set(units):
-            refuse(f"{key}.parameters", f"{part.shape} takes {', '.join(units)}; given {', '.join(part.parameters)}")
-        for parameter, name in part.parameters.items():
-            if name not in config.variables:
-                refuse(f"{key}.parameters.{parameter}", f"no design variable {name!r}")
-            if config.variables[name].unit != units[parameter]:
-                refuse(f"variables.{name}.unit", f"{part.shape} expects {units[parameter]!r} for {parameter}")
+        yield from _part_problems(part, config, part_classes[part.name])
+    yield from _number_problems(config)
+    yield from _clearance_problems(config)
+
+
+def repeated(names: Iterable[str]) -> str | None:
+    """The first name that occurs twice."""
+    return next((name for name, count in Counter(names).items() if count > 1), None)
+
+
+def unknown(key: str, kind: str, name: str, known: Iterable[str]) -> Iterator[Problem]:
+    """The problem that a name is not among the known ones."""
+    known = list(known)
+    if name not in known:
+        yield key, f"no {kind} {name!r}; {nearest(name, known)}"
+
+
+def _variable_problems(config: StudyConfig) -> Iterator[Problem]:
+    if not config.variables:
+        yield "variables", "a study needs at least one design variable"
     used = {name for part in config.parts for name in part.parameters.values()}
     for name, variable in config.variables.items():
+        key = f"variables.{name}"
+        if not name or "=" in name or name != name.strip():
+            yield key, f"{name!r} cannot be given as --set NAME=VALUE"
+        yield from _grid_problems(key, variable)
         if name not in used and not variable.sets:
-            refuse(f"variables.{name}", "no part takes it and it sets nothing")
-    _check_flight(config, refuse)
-    _check_numbers(config, refuse)
+            yield key, "no part takes it and it sets nothing"
+    if config.baseline:
+        for name in config.baseline:
+            yield from unknown(f"baseline.{name}", "design variable", name, config.variables)
+        for name in config.variables:
+            if name not in config.baseline:
+                yield "baseline", f"no value for design variable {name!r}"
 
 
-def _check_flight(config: StudyConfig, refuse: Any) -> None:
-    flight = config.flight
-    for group in flight.joint_groups:
-        for key in ("initial_rad", "ranges_deg"):
-            if len(getattr(group, key)) != len(group.joints):
-                refuse(f"flight.joint_groups[{group.name}].{key}", f"needs {len(group.joints)} entries, one a joint")
-        for joint, (low, high) in zip(group.joints, group.ranges_deg, strict=True):
-            if low >= high:
-                refuse(f"flight.joint_groups[{group.name}].ranges_deg", f"{joint}: {low:g} must be below {high:g}")
-    for pair in flight.jets.symmetric_pairs:
-        for jet in pair:
-            if jet not in flight.jets.frames:
-                refuse("flight.jets.symmetric_pairs", f"no jet {jet!r}")
-    for key, name in [("flight.trajectory", flight.trajectory)] + [
-        ("validation.trajectories", name) for name in config.validation.trajectories
-    ]:
-        if name not in config.trajectories:
-            refuse(key, f"no trajectory {name!r}; there are {', '.join(config.trajectories)}")
-    for name, trajectory in config.trajectories.items():
-        for window in trajectory.windows:
-            if window.to_s <= window.from_s:
-                refuse(f"trajectories.{name}.windows", f"to_s = {window.to_s:g} is not after {window.from_s:g}")
-    if flight.jet_model == "turbine" and flight.turbine is None:
-        refuse("flight.jet_model", "'turbine' needs [flight.turbine]")
+def _grid_problems(key: str, variable: VariableConfig) -> Iterator[Problem]:
+    span = variable.maximum - variable.minimum
+    if span <= 0.0:
+        yield key, f"max = {variable.maximum:g} must be above min = {variable.minimum:g}"
+    elif span / variable.step >= MOST_LEVELS:
+        yield f"{key}.step", f"{variable.step:g} gives more than {MOST_LEVELS} values from min to max"
+    elif abs(span / variable.step - round(span / variable.step)) > 1e-6:
+        yield f"{key}.step", f"{variable.step:g} does not divide max - min into whole steps"
 
 
-def _check_numbers(config: StudyConfig, refuse: Any) -> None:
+def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]) -> Iterator[Problem]:
+    key = f"parts.{part.name}"
+    if part.material not in config.materials:
+        yield f"{key}.material", f"{part.material!r} is not in [materials]; {nearest(part.material, config.materials)}"
+    units = parameter_units(part_class)
+    for parameter in part.parameters:
+        yield from unknown(f"{key}.parameters", f"parameter of {part.shape}", parameter, units)
+    for parameter in units:
+        if parameter not in part.parameters:
+            yield f"{key}.parameters", f"{part.shape} takes {parameter!r} too, which is not given"
+    for parameter, name in part.parameters.items():
+        yield from unknown(f"{key}.parameters.{parameter}", "design variable", name, config.variables)
+        if name in config.variables and parameter in units and config.variables[name].unit != units[parameter]:
+            yield f"variables.{name}.unit", f"{part.shape} expects {units[parameter]!r} for {parameter}"
+    if not part.supports:
+        yield f"{key}.supports", "empty: nothing would hold the part; name the faces that are clamped"
+    if not part.loads:
+        yield f"{key}.loads", "empty: nothing would load the part"
+    for load in part.loads:
+        if load.pressing_n == 0.0:
+            yield f"{key}.loads", f"pressing_n = 0 on {load.face!r} is no load"
+
+
+def _number_problems(config: StudyConfig) -> Iterator[Problem]:
     """Names of objectives and limits, as far as they are known before an evaluation."""
     names = config.objectives.names
     if not 1 <= len(names) <= MOST_OBJECTIVES:
-        refuse("objectives", f"{len(names)} objectives: there must be one to {MOST_OBJECTIVES}")
-    if len(set(names)) != len(names):
-        refuse("objectives", f"{next(n for n in names if names.count(n) > 1)!r} is named twice")
+        yield "objectives", f"{len(names)} objectives: there must be one to {MOST_OBJECTIVES}"
+    if twice := repeated(names):
+        yield "objectives", f"{twice!r} is named twice"
     for key, listed in (
         ("objectives.minimise", config.objectives.minimise),
         ("objectives.maximise", config.objectives.maximise),
@@ -92,26 +110,53 @@ def _check_numbers(config: StudyConfig, refuse: Any) -> None:
     ):
         for name in listed:
             if reason := _unknown_number(config, name):
-                refuse(key, reason)
+                yield key, reason
     for name, limit in config.constraints.limits.items():
-        if limit.minimum is None and limit.maximum is None:
-            refuse(f"constraints.limits.{name}", "needs min, max or both")
-        if limit.minimum is not None and limit.maximum is not None and limit.minimum > limit.maximum:
-            refuse(f"constraints.limits.{name}", f"min = {limit.minimum:g} is above max = {limit.maximum:g}")
+        yield from _limit_problems(f"constraints.limits.{name}", limit)
+
+
+def _limit_problems(key: str, limit: LimitConfig) -> Iterator[Problem]:
+    if limit.minimum is None and limit.maximum is None:
+        yield key, "needs min, max or both"
+    if limit.minimum is not None and limit.maximum is not None and limit.minimum > limit.maximum:
+        yield key, f"min = {limit.minimum:g} is above max = {limit.maximum:g}"
 
 
 def _unknown_number(config: StudyConfig, name: str) -> str | None:
     """Why there can be no such number; None if there may be."""
     if ":" in name or name in QUANTITIES:
         return None
-    path = name.partition("(")[2].rstrip(")") if "(" in name else name
+    function, bracket, rest = name.partition("(")
+    if bracket and (function not in REDUCTIONS or not rest.endswith(")")):
+        return f"{name!r}: expected {', '.join(f'{reduction}(…)' for reduction in REDUCTIONS)}"
+    path = rest.removesuffix(")") if bracket else name
     first, _, rest = path.partition(".")
     if first not in ("parts", "flight", "objective_families") or not rest:
-        near = difflib.get_close_matches(name, QUANTITIES, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(QUANTITIES)}, parts.…, flight.…"
-        return f"no number {name!r}; {hint}"
+        return f"no number {name!r}; {nearest(name, [*QUANTITIES, 'parts.…', 'flight.…'])}"
+    if "*" in path.split(".") and not bracket:
+        return f"{name!r}: a path with * needs min(…), max(…) or sum(…) around it"
     part = rest.partition(".")[0]
     known = [part.name for part in config.parts]
     if first == "parts" and part != "*" and part not in known:
-        return f"{name!r}: no part {part!r}; there are {', '.join(known)}"
+        return f"{name!r}: no part {part!r}; {nearest(part, known)}"
     return None
+
+
+def _clearance_problems(config: StudyConfig) -> Iterator[Problem]:
+    """Clearances that are demanded must be measured, and so far that the demand can be met."""
+    measured = config.interference
+    for name in ("body_clearance_min_mm", "plume_clearance_min_mm"):
+        least = getattr(config.constraints, name)
+        if least is None:
+            continue
+        if measured is None:
+            yield f"constraints.{name}", "needs the section [interference], which says what is measured"
+        elif name.startswith("plume") and not measured.plumes.jets:
+            yield f"constraints.{name}", "needs jets in [interference.plumes]"
+        elif least > measured.report_below_mm:
+            yield (
+                f"constraints.{name}",
+                (
+                    f"{least:g} is above interference.report_below_mm = {measured.report_below_mm:g}: farther is not measured"
+                ),
+            )

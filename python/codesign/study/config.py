@@ -12,6 +12,9 @@ from codesign.robot.clearance import InterferenceSettings
 Positive = Annotated[float, Meta(gt=0)]
 NonNegative = Annotated[float, Meta(ge=0)]
 Probability = Annotated[float, Meta(ge=0, le=1)]
+Name = Annotated[str, Meta(min_length=1)]
+Deviation = Annotated[float, Meta(ge=0, le=0.15)]  # relative; random numbers stay within six deviations
+Seed = Annotated[int, Meta(ge=0, le=2**32 - 1)]
 Sign = Annotated[float, Meta(ge=-1, le=1)]
 Vector3 = tuple[float, float, float]
 Range = tuple[float, float]
@@ -44,7 +47,7 @@ class MaterialConfig(Section, frozen=True, kw_only=True):
 class LoadConfig(Section, frozen=True, kw_only=True):
     """A total force that presses on a named face, uniformly, against its outward normal."""
 
-    face: str
+    face: Name
     pressing_n: float
 
 
@@ -56,12 +59,12 @@ class PartConfig(Section, frozen=True, kw_only=True):
     arguments of the class. density_kg_m3: of the part's mass, where it is not that of the material; reports say so.
     """
 
-    name: str
-    shape: str
+    name: Name
+    shape: Name
     parameters: dict[str, str]
-    material: str
+    material: Name
     density_kg_m3: Positive | None = None
-    supports: list[str]
+    supports: list[Name]
     loads: list[LoadConfig]
     placements: list[PartPlacement] = []
     options: dict[str, float | bool | str] = {}
@@ -73,7 +76,7 @@ class RobotConfig(Section, frozen=True, kw_only=True):
     visuals: package:// path of a URDF with the same links, whose meshes pictures show where its package is installed.
     """
 
-    urdf: str
+    urdf: Name
     visuals: str = ""
 
 
@@ -100,7 +103,7 @@ class InitialStateConfig(Section, frozen=True, kw_only=True):
 class JointGroupConfig(Section, frozen=True, kw_only=True):
     """Joints that share controller settings; one value of each list a joint."""
 
-    name: str
+    name: Name
     joints: list[str]
     initial_rad: list[float]
     ranges_deg: list[Range]
@@ -248,9 +251,9 @@ class DisturbancesConfig(Section, frozen=True, kw_only=True):
     gust_deviation_n: tuple[NonNegative, NonNegative, NonNegative] = (0.0, 0.0, 0.0)
     gust_time_s: Positive = 1.0
     mass_scale: Positive = 1.0
-    mass_deviation: NonNegative = 0.0
-    thrust_deviation: NonNegative = 0.0
-    seed: Annotated[int, Meta(ge=0)] = 0
+    mass_deviation: Deviation = 0.0
+    thrust_deviation: Deviation = 0.0
+    seed: Seed = 0
 
 
 class TrajectoryConfig(Section, frozen=True, kw_only=True):
@@ -327,26 +330,26 @@ class ValidationConfig(Section, frozen=True, kw_only=True):
 class OptimizerConfig(Section, frozen=True, kw_only=True):
     """Defaults of the search; the command line overrides them."""
 
-    algorithm: str = "nsga2"
-    population: Annotated[int, Meta(ge=2)] = 25
-    generations: Annotated[int, Meta(ge=1)] = 40
+    algorithm: Literal["nsga2", "nsga3", "agemoea", "agemoea2", "smsemoa", "random"] = "nsga2"
+    population: Annotated[int, Meta(ge=2, le=100_000)] = 25
+    generations: Annotated[int, Meta(ge=1, le=1_000_000)] = 40
     crossover_probability: Probability = 0.9
     mutation_probability: Probability = 0.25
-    seed: int = 1
+    seed: Seed = 1
 
 
 class ExecutionConfig(Section, frozen=True, kw_only=True):
     """Worker processes and their limits."""
 
-    workers: Annotated[int, Meta(ge=1)] = 2
-    time_limit_s: Positive = 120.0
-    memory_limit_mib: Annotated[int, Meta(ge=64)] = 2048
+    workers: Annotated[int, Meta(ge=1, le=1000)] = 2
+    time_limit_s: Annotated[float, Meta(gt=0, le=1e7)] = 120.0
+    memory_limit_mib: Annotated[int, Meta(ge=64, le=2**30)] = 2048
 
 
 class StudyConfig(Section, frozen=True, kw_only=True):
     """The whole file."""
 
-    name: str
+    name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][^/\\\x00-\x1f]*$")]  # of folders and files
     title: str = ""
     description: str = ""
     robot: RobotConfig

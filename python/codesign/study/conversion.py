@@ -1,42 +1,153 @@
-"""TOML documents to checked configurations, with the place of what is wrong."""
+"""TOML documents to checked configurations, with the place of what is wrong and the nearest known name."""
 
 from __future__ import annotations
 
+import copy
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import msgspec
+import msgspec.inspect as kinds
 
 from codesign.errors import StudyError
-from codesign.study.config import MaterialConfig, RawStudy, StudyConfig, TrajectoryConfig, VariableConfig
+from codesign.names import closest, nearest
+from codesign.study.config import DECIDING_SECTIONS, RawStudy, StudyConfig
+
+LARGEST_NUMBER = 1e100  # beyond it squares overflow; NaN is refused by the same comparison
+FIXED_TABLES = ("variables", "objectives")  # what a variable may not set although results depend on it
+UNKNOWN_KEY = re.compile(r"Object contains unknown field `(.*)`")
+MISSING_KEY = re.compile(r"Object missing required field `(.*)`")
+STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+|\.\.\.)\]")  # of a place as msgspec writes it: `a.b[0].c[...]`
 
 
 def convert(raw: RawStudy, path: Path) -> StudyConfig:
-    """The configuration of a parsed study.toml. Raises: StudyError with file, key and reason."""
+    """The configuration of a parsed study.toml. Raises: StudyError with file, key, value and reason."""
+    for key, number in numbers(raw):
+        if not abs(number) <= LARGEST_NUMBER:
+            raise StudyError(f"{path}: {key}: {_shown(number)} is not a finite number")
     try:
         return msgspec.convert(raw, StudyConfig)
     except msgspec.ValidationError as error:
-        reason, _, location = str(error).partition(" - at `$")
-        key = _named_key(raw, location.rstrip("`").lstrip(".")) or "top level"
-        raise StudyError(f"{path}: {key}: {reason}") from error
+        raise StudyError(f"{path}: {_explained(raw, error)}") from error
 
 
-def _named_key(raw: RawStudy, location: str) -> str:
-    """The location of a wrong value with the name of the table entry that msgspec writes as `[...]`."""
-    table, placeholder, rest = location.partition("[...]")
-    entry_type = {"variables": VariableConfig, "materials": MaterialConfig, "trajectories": TrajectoryConfig}.get(table)
-    if not placeholder or entry_type is None:
-        return location
-    for name, entry in raw[table].items():
-        try:
-            msgspec.convert(entry, entry_type)
-        except msgspec.ValidationError:
-            return f"{table}.{name}{rest}"
-    return location
+def numbers(node: Any, place: str = "") -> Iterator[tuple[str, float]]:
+    """All numbers of a document with their places."""
+    if isinstance(node, dict):
+        for key, child in node.items():
+            yield from numbers(child, f"{place}.{key}" if place else key)
+    elif isinstance(node, list):
+        for index, child in enumerate(node):
+            yield from numbers(child, f"{place}[{index}]")
+    elif isinstance(node, int | float) and not isinstance(node, bool):
+        yield place, node
+
+
+def _explained(raw: RawStudy, error: msgspec.ValidationError) -> str:
+    """`key: reason` of a refusal by msgspec."""
+    reason, _, location = str(error).partition(" - at `$")
+    steps = _steps(raw, location.rstrip("`"), str(error))
+    place, node = _written(steps), _at(raw, steps)
+    kind = _kind(steps)
+    if found := UNKNOWN_KEY.fullmatch(reason):
+        reason = f"unknown key {found[1]!r}; {nearest(found[1], _keys(kind))}"
+    elif found := MISSING_KEY.fullmatch(reason):
+        known = _keys(kind)
+        near = closest(found[1], [key for key in node if key not in known])
+        reason = f"the key {found[1]!r} is missing" + (f"; is {near!r} meant to be it?" if near else "")
+    elif reason.startswith("Invalid enum value"):
+        reason = f"{_shown(node)} is not possible; {nearest(str(node), _choices(kind))}"
+    else:
+        reason = f"{_shown(node)}: {reason[:1].lower()}{reason[1:]}"
+    return f"{place or 'top level'}: {reason}"
+
+
+def _shown(value: Any) -> str:
+    text = repr(value) if not isinstance(value, bool) else str(value).lower()
+    return text if len(text) <= 40 else f"{text[:37]}..."
+
+
+def _steps(raw: RawStudy, location: str, message: str) -> list[str | int]:
+    """Keys and indices of a place. msgspec writes entries of a table as `[...]`: found by leaving out the others."""
+    steps: list[str | int] = []
+    for key, index in STEP.findall(location):
+        if index != "...":
+            steps.append(int(index) if index else key)
+            continue
+        for name in _at(raw, steps):
+            reduced = copy.deepcopy(raw)
+            table = _at(reduced, steps)
+            for other in [other for other in table if other != name]:
+                del table[other]
+            if _refusal(reduced) == message:
+                steps.append(name)
+                break
+    return steps
+
+
+def _refusal(raw: RawStudy) -> str:
+    try:
+        msgspec.convert(raw, StudyConfig)
+    except msgspec.ValidationError as error:
+        return str(error)
+    return ""
+
+
+def _at(raw: Any, steps: Iterable[str | int]) -> Any:
+    for step in steps:
+        raw = raw[step]
+    return raw
+
+
+def _written(steps: Iterable[str | int]) -> str:
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".")
+
+
+def _kind(steps: Iterable[str | int]) -> kinds.Type:
+    """The type that the configuration has at a place."""
+    kind: kinds.Type = kinds.type_info(StudyConfig)
+    for step in steps:
+        kind = _without_none(kind)
+        if isinstance(kind, kinds.StructType):
+            kind = next(field.type for field in kind.fields if field.encode_name == step)
+        elif isinstance(kind, kinds.DictType):
+            kind = kind.value_type
+        elif isinstance(kind, kinds.TupleType):
+            kind = kind.item_types[int(step)]
+        elif isinstance(kind, kinds.CollectionType):
+            kind = kind.item_type
+    return _without_none(kind)
+
+
+def _without_none(kind: kinds.Type) -> kinds.Type:
+    if isinstance(kind, kinds.UnionType):
+        some = [other for other in kind.types if not isinstance(other, kinds.NoneType)]
+        return some[0] if len(some) == 1 else kind
+    return kind
+
+
+def _keys(kind: kinds.Type) -> list[str]:
+    return [field.encode_name for field in kind.fields] if isinstance(kind, kinds.StructType) else []
+
+
+def _choices(kind: kinds.Type) -> list[str]:
+    return [str(value) for value in kind.values] if isinstance(kind, kinds.LiteralType) else []
 
 
 def replace_number(raw: RawStudy, dotted: str, value: float, path: Path) -> None:
-    """Sets raw["a"]["b"] for "a.b"; list items by index. The place must exist and hold a number."""
+    """Sets raw["a"]["b"] for "a.b"; list items by index. The place must exist and hold a number that decides results.
+
+    Raises: StudyError, with the nearest place that holds a number.
+    """
+
+    def refuse(reason: str) -> StudyError:
+        places = [place.replace("[", ".").replace("]", "") for place, _ in numbers(raw)]
+        near = closest(dotted, filter(_settable, places))
+        hint = f"did you mean {near!r}?" if near else "name a number of this file, `table.key` or `table.0.key`"
+        return StudyError(f"{path}: sets = {dotted!r}: {reason}; {hint}")
+
     *parents, last = dotted.split(".")
     node: Any = raw
     try:
@@ -45,7 +156,14 @@ def replace_number(raw: RawStudy, dotted: str, value: float, path: Path) -> None
         index = int(last) if isinstance(node, list) else last
         old = node[index]
     except (KeyError, IndexError, ValueError, TypeError):
-        raise StudyError(f"{path}: sets = {dotted!r}: no such number in the study") from None
+        raise refuse("no such number in the study") from None
     if isinstance(old, bool) or not isinstance(old, int | float):
-        raise StudyError(f"{path}: sets = {dotted!r}: not a number")
-    node[index] = value
+        raise refuse("not a number")
+    if not _settable(dotted):
+        raise refuse("does not enter an evaluation")
+    node[index] = int(value) if isinstance(old, int) and float(value).is_integer() else value
+
+
+def _settable(dotted: str) -> bool:
+    section = dotted.partition(".")[0]
+    return section in DECIDING_SECTIONS and section not in FIXED_TABLES

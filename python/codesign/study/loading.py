@@ -8,19 +8,23 @@ import importlib
 import importlib.util
 import sys
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from itertools import chain
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
-from codesign.errors import StudyError
+from codesign.errors import DesignError, StudyError, UrdfError
+from codesign.names import nearest
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.robot.description import RobotDescription
-from codesign.study.checks import check_study
-from codesign.study.config import PartConfig, StudyConfig
+from codesign.study.checks import Problem, reference_problems
+from codesign.study.config import PartConfig, RawStudy, StudyConfig
 from codesign.study.conversion import convert
 from codesign.study.fingerprint import PACKAGE, code_hash, study_hash
+from codesign.study.flight_checks import flight_problems, robot_problems
+from codesign.study.parts import built_problems
 from codesign.study.study import StudyData
 
 STUDIES = PACKAGE / "studies"
@@ -32,46 +36,89 @@ def shipped_studies() -> list[str]:
     return sorted(p.parent.name for p in STUDIES.glob("*/study.toml"))
 
 
-@functools.lru_cache(maxsize=8)
 def load(source: str | Path, kind: type[AnyStudy]) -> AnyStudy:
-    """Loads and checks a study as an object of `kind`.
+    """Loads and checks a study as an object of `kind`; kept until one of its files changes.
 
     Args:
         source: a shipped study's name, or the path of a study.toml or of its folder.
-    Raises: StudyError with file, key and reason.
+    Raises: StudyError with file, key, value and reason.
     """
     path = _locate(source)
-    try:
-        raw = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(f"{path}: cannot be read: {error}") from error
-    except tomllib.TOMLDecodeError as error:
-        raise StudyError(f"{path}: not valid TOML: {error}") from error
+    study: AnyStudy = _load(str(source), path, kind, _content(path, _parse(path)))
+    return study
+
+
+@functools.lru_cache(maxsize=8)
+def _load(source: str, path: Path, kind: type[AnyStudy], _content: str) -> AnyStudy:
+    raw = _parse(path)
     config = convert(raw, path)
     part_classes = {part.name: _part_class(part, path) for part in config.parts}
     functions = {name: _function(name, path) for name in own_functions(config)}
+    _refuse(path, chain(reference_problems(config, part_classes), flight_problems(config)))
+    try:
+        robot = RobotDescription.load(path.parent / config.robot.urdf)
+    except UrdfError as error:
+        raise StudyError(f"{path}: robot.urdf: {error}") from error
     code = code_hash({cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()})
-    check_study(config, part_classes, path)
     space = DesignSpace(tuple(Variable(n, v.minimum, v.maximum, v.step, v.unit) for n, v in config.variables.items()))
     study = kind(
-        source=str(source if str(source) in shipped_studies() else path),
+        source=source if source in shipped_studies() else str(path),
         path=path,
         raw=raw,
         config=config,
         space=space,
         part_classes=part_classes,
         functions=functions,
-        base_robot=RobotDescription.load(path.parent / config.robot.urdf),
+        base_robot=robot,
         hash=study_hash(raw, path, code),
         code_hash=code,
     )
-    for corner in ([0] * len(space.variables), [levels - 1 for levels in space.levels]):
-        study.configured(space.from_indices(corner))  # a number that a variable sets must exist and stay valid
-    try:
-        _ = study.baseline
-    except ValueError as error:
-        raise StudyError(f"{path}: baseline: {error}") from error
+    _check_designs(study)
     return study
+
+
+def _parse(path: Path) -> RawStudy:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError(f"{path}: cannot be read: {error}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise StudyError(f"{path}: not valid TOML: {error}") from error
+
+
+def _content(path: Path, raw: RawStudy) -> str:
+    """Digest of the files that a study is made of: its own, the robot, the modules beside it."""
+    folder = path.parent
+    robot = raw.get("robot")
+    urdf = robot.get("urdf") if isinstance(robot, dict) else None
+    files = [path, *sorted(folder.glob("*.py")), *sorted(folder.glob("*/*.py"))]
+    files += [folder / urdf] if isinstance(urdf, str) else []
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(str(file).encode() + b"\0" + (file.read_bytes() if file.is_file() else b""))
+    return digest.hexdigest()
+
+
+def _refuse(path: Path, problems: Iterable[Problem]) -> None:
+    for key, reason in problems:
+        raise StudyError(f"{path}: {key}: {reason}")
+
+
+def _check_designs(study: StudyData) -> None:
+    """What designs of the grid show: values that variables set, the baseline, the parts' options, faces and places."""
+    space, path = study.space, study.path
+    second, last, middle = [1] * len(space.levels), [n - 1 for n in space.levels], [n // 2 for n in space.levels]
+    for corner in ([0] * len(space.levels), second, last):
+        configured = study.configured(space.from_indices(corner))
+        _refuse(path, chain(reference_problems(configured, study.part_classes), flight_problems(configured)))
+    try:
+        baseline = study.baseline
+    except DesignError as error:
+        raise StudyError(f"{path}: baseline: {error}") from error
+    designs = [space.from_indices(indices) for indices in (middle, [0] * len(middle), last)]
+    designs = designs if baseline is None else [baseline, *designs]
+    _refuse(path, robot_problems(study.config, study.base_robot))
+    _refuse(path, built_problems(study.config, study.part_classes, study.base_robot, designs))
 
 
 def _locate(source: str | Path) -> Path:
@@ -93,11 +140,13 @@ def own_functions(config: StudyConfig) -> list[str]:
 def _function(name: str, path: Path) -> Callable[[Mapping[str, Any]], float]:
     module_name, _, function_name = name.partition(":")
     try:
-        function = getattr(_load_module(module_name, path.parent), function_name)
+        module = _load_module(module_name, path.parent)
     except Exception as error:  # whatever a user's module raises when it is imported
         raise StudyError(f"{path}: {name!r}: {type(error).__name__}: {error}") from error
+    function = getattr(module, function_name, None)
     if not callable(function):
-        raise StudyError(f"{path}: {name!r}: not a function of an evaluation's document")
+        functions = [key for key, value in vars(module).items() if isinstance(value, FunctionType)]
+        raise StudyError(f"{path}: {name!r}: no such function; {nearest(function_name, functions)}")
     return cast("Callable[[Mapping[str, Any]], float]", function)
 
 
@@ -107,15 +156,17 @@ def _part_class(part: PartConfig, path: Path) -> type[Part]:
         raise StudyError(f"{path}: parts.{part.name}.shape = {part.shape!r}: expected module:Class")
     try:
         module = _load_module(module_name, path.parent)
-        shape = getattr(module, class_name)
     except Exception as error:  # whatever a user's module raises when it is imported
         raise StudyError(
             f"{path}: parts.{part.name}.shape = {part.shape!r}: {type(error).__name__}: {error}"
         ) from error
-    if not (isinstance(shape, type) and issubclass(shape, Part)):
-        raise StudyError(
-            f"{path}: parts.{part.name}.shape = {part.shape!r}: not a subclass of codesign.parts.part.Part"
-        )
+    classes = {name: value for name, value in vars(module).items() if isinstance(value, type)}
+    shape = classes.get(class_name)
+    if shape is None or not issubclass(shape, Part) or shape is Part:
+        own = [name for name, value in classes.items() if issubclass(value, Part) and value is not Part]
+        reason = "is not a subclass of codesign.parts.part.Part" if shape else f"is not in {module_name}"
+        hint = nearest(class_name, own)
+        raise StudyError(f"{path}: parts.{part.name}.shape = {part.shape!r}: {class_name!r} {reason}; {hint}")
     return shape
 
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from codesign.errors import CodesignError
+from codesign.errors import CodesignError, ExecutionError
 from codesign.files import write_text
 from codesign.problem.evaluation import Evaluation
 from codesign.report.compute import compute_detail
@@ -148,8 +148,10 @@ class Viewer:
         port: int,
         packages: tuple[Path, ...] | None,
     ) -> None:
-        import viser
-
+        try:
+            import viser
+        except ImportError as error:
+            raise ExecutionError("the viewer needs the package viser: pip install 'codesign[view]'") from error
         self._study, self._choices, self._details, self._folder = study, choices, dict(details), folder
         self._trajectory, self._packages = trajectory, packages
         with contextlib.redirect_stdout(io.StringIO()):  # viser's own banner

@@ -45,7 +45,8 @@ def histories(data: FigureData) -> Any:
     rows[4].plot(main["time"], main["qp_iterations"][:, 0], color=style.ORANGE, label="factorisations", linewidth=0.9)
     rows[4].set(ylabel="QP", xlabel="time (s)", xlim=(0.0, main["time"][-1]))
     for axes in rows:
-        axes.legend(loc="upper right", ncols=4, borderaxespad=0.1)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="upper right", ncols=4, borderaxespad=0.1)
         _mark_commands(axes, data.study, main.trajectory, words=axes is rows[0])
     figure.align_ylabels(rows)
     return figure

@@ -55,15 +55,17 @@ def _flight(flight: FlightHistory) -> dict[str, Any]:
         return {"label": label, "unit": unit, "zero": zero, "series": series}
 
     groups = [group.replace("_", " ") for group in flight.groups]
+    charts = [
+        chart("Position error", "cm", 100.0 * flight["com_error"], ["centre of mass"]),
+        chart("Attitude error", "°", flight["attitude_error"] / DEGREE, ["base"]),
+        chart("Jet thrusts", "N", flight["thrust"], short_names(flight.jets), zero=False),
+    ]
+    if groups:  # without a weighted joint group there is no joint velocity to show
+        charts.append(chart("Joint velocity error", "°/s", flight["joint_velocity_error"] / DEGREE, groups))
     return {
         "trajectory": flight.trajectory,
         "time": {"label": "time", "values": encoded(flight["time"], "f4")},
-        "charts": [
-            chart("Position error", "cm", 100.0 * flight["com_error"], ["centre of mass"]),
-            chart("Attitude error", "°", flight["attitude_error"] / DEGREE, ["base"]),
-            chart("Jet thrusts", "N", flight["thrust"], short_names(flight.jets), zero=False),
-            chart("Joint velocity error", "°/s", flight["joint_velocity_error"] / DEGREE, groups),
-        ],
+        "charts": charts,
     }
 
 

@@ -39,6 +39,10 @@ class JetpackBracket(Part):
     thickness: of the tilted slab; 15, or 14.9994 as in the published parts (`as_published`).
     """
 
+    load_variants = ("uniform", "thrust_line")
+    support_variants = ("published", "bolted")
+    most_loads = 1
+
     angle: float = parameter("deg", minimum=0.5, maximum=89.5)
     distance: float = parameter("mm", minimum=0.0, maximum=400.0)
     _: KW_ONLY

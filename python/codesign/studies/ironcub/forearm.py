@@ -55,6 +55,9 @@ class ForearmJetSupport(Part):
     get in those roundings; 0 for none. The relief just clears the heads of M3 cap screws, 2.75.
     """
 
+    load_variants = ("uniform", "thrust_line")
+    most_loads = 1
+
     offset: float = parameter("mm", minimum=0.0, maximum=200.0)
     length: float = parameter("mm", minimum=0.0, maximum=500.0)
     _: KW_ONLY

@@ -1,0 +1,100 @@
+"""What is wrong with a study's flight: joints, jets, times, trajectories, and names that the robot does not have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from codesign.robot.description import RobotDescription
+from codesign.study.checks import Problem, repeated, unknown
+from codesign.study.config import FlightConfig, StudyConfig
+
+MOST_SAMPLES = 1_000_000  # of a flight
+
+
+def flight_problems(config: StudyConfig) -> Iterator[Problem]:
+    """What can be judged from the file alone."""
+    flight = config.flight
+    yield from _time_problems(flight)
+    yield from _joint_problems(flight)
+    yield from _jet_problems(flight)
+    for key, limits in (("roll", flight.references.roll_range_deg), ("pitch", flight.references.pitch_range_deg)):
+        if limits[0] > limits[1]:
+            yield f"flight.references.{key}_range_deg", f"{limits[0]:g} is above {limits[1]:g}"
+    if bool(flight.ground.frames) != bool(flight.ground.points_m):
+        yield "flight.ground", "frames and points_m belong together: the points stand in each of the frames"
+    if flight.jet_model == "turbine" and flight.turbine is None:
+        yield "flight.jet_model", "'turbine' needs [flight.turbine]"
+    yield from _trajectory_problems(config)
+
+
+def _time_problems(flight: FlightConfig) -> Iterator[Problem]:
+    steps = flight.duration_s / flight.step_s
+    if steps > MOST_SAMPLES:
+        yield "flight.step_s", f"{flight.step_s:g} gives more than {MOST_SAMPLES} samples"
+    elif round(steps) < 1 or abs(steps - round(steps)) > 1e-6:
+        yield "flight.duration_s", f"{flight.duration_s:g} is not a whole number of steps of {flight.step_s:g} s"
+
+
+def _joint_problems(flight: FlightConfig) -> Iterator[Problem]:
+    groups = flight.joint_groups
+    if twice := repeated(group.name for group in groups):
+        yield "flight.joint_groups", f"two groups have the name {twice!r}"
+    if twice := repeated(joint for group in groups for joint in group.joints):
+        yield "flight.joint_groups", f"joint {twice!r} is named twice"
+    for group in groups:
+        key = f"flight.joint_groups[{group.name}]"
+        if not group.joints:
+            yield f"{key}.joints", "empty: leave out a group without joints"
+        for name in ("initial_rad", "ranges_deg"):
+            given = len(getattr(group, name))
+            if given != len(group.joints):
+                yield f"{key}.{name}", f"needs {len(group.joints)} entries, one per joint, has {given}"
+        for joint, (low, high) in zip(group.joints, group.ranges_deg, strict=False):
+            if low >= high:
+                yield f"{key}.ranges_deg", f"{joint}: {low:g} must be below {high:g}"
+
+
+def _jet_problems(flight: FlightConfig) -> Iterator[Problem]:
+    jets = flight.jets
+    if not jets.frames:
+        yield "flight.jets.frames", "empty: a robot flies on at least one jet"
+    if twice := repeated(jets.frames):
+        yield "flight.jets.frames", f"jet {twice!r} is named twice"
+    for pair in jets.symmetric_pairs:
+        for jet in pair:
+            yield from unknown("flight.jets.symmetric_pairs", "jet", jet, jets.frames)
+        if pair[0] == pair[1]:
+            yield "flight.jets.symmetric_pairs", f"{pair[0]!r} is paired with itself"
+
+
+def _trajectory_problems(config: StudyConfig) -> Iterator[Problem]:
+    yield from unknown("flight.trajectory", "trajectory", config.flight.trajectory, config.trajectories)
+    for name in config.validation.trajectories:
+        yield from unknown("validation.trajectories", "trajectory", name, config.trajectories)
+    for name, trajectory in config.trajectories.items():
+        if not name or "@" in name:
+            yield f"trajectories.{name}", "a trajectory's name must not be empty or hold @, which stands before a seed"
+        for window in trajectory.windows:
+            if window.to_s <= window.from_s:
+                yield f"trajectories.{name}.windows", f"to_s = {window.to_s:g} is not after {window.from_s:g}"
+
+
+def robot_problems(config: StudyConfig, robot: RobotDescription) -> Iterator[Problem]:
+    """Names of joints, frames and links that the robot does not have."""
+    flight = config.flight
+    for group in flight.joint_groups:
+        for joint in group.joints:
+            key = f"flight.joint_groups[{group.name}].joints"
+            yield from unknown(key, "moving joint", joint, robot.moving_joint_names)
+    for jet in flight.jets.frames:
+        yield from unknown("flight.jets.frames", "link", jet, robot.link_names)
+    for frame in flight.ground.frames:
+        yield from unknown("flight.ground.frames", "link", frame, robot.link_names)
+    if config.interference is not None:
+        for link in config.interference.bodies:
+            yield from unknown("interference.bodies", "link", link, robot.link_names)
+        for pair in config.interference.ignore:
+            for link in pair:
+                yield from unknown("interference.ignore", "link", link, robot.link_names)
+        for jet in config.interference.plumes.jets:
+            yield from unknown("interference.plumes.jets", "link", jet, robot.link_names)

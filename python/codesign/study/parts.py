@@ -1,0 +1,107 @@
+"""Parts of a study: building them from a design, and what is wrong with how the study names their options and faces."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from codesign.errors import CodesignError
+from codesign.geometry.shape import face_names
+from codesign.parts.part import Part
+from codesign.problem.design_space import Design
+from codesign.robot.assembly import PartBody, assemble
+from codesign.robot.description import RobotDescription
+from codesign.robot.inertial import Inertial
+from codesign.study.checks import Problem, unknown
+from codesign.study.config import PartConfig, StudyConfig
+
+
+def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], design: Mapping[str, float]) -> Part:
+    """A part of a design. Raises: GeometryError if the design gives no sound part."""
+    make: Callable[..., Part] = part_class
+    parameters = {parameter: design[variable] for parameter, variable in part.parameters.items()}
+    density = part.density_kg_m3 or config.materials[part.material].density_kg_m3
+    return make(**parameters, **part.options, density=density)
+
+
+def built_problems(
+    config: StudyConfig, part_classes: Mapping[str, type[Part]], robot: RobotDescription, designs: Sequence[Design]
+) -> Iterator[Problem]:
+    """What building the parts shows: options, faces, places. designs: tried in turn until a part can be built.
+
+    No mesh is made: the shape is only written down. A part that no design gives is left to its evaluation.
+    """
+    yield from _variant_problems(config, part_classes)
+    for part in config.parts:
+        part_class = part_classes[part.name]
+        most = part_class.most_loads
+        if most is not None and len(part.loads) > most:
+            yield f"parts.{part.name}.loads", f"{part.shape} takes {most}, {len(part.loads)} are given"
+        wrong_options = list(_option_problems(part, part_class))
+        yield from wrong_options
+        if wrong_options:
+            continue
+        try:
+            built = _first_built(part, config, part_class, designs)
+            if built is not None:
+                yield from _face_problems(part, config, built)
+                yield from _place_problems(part, robot, built)
+        except Exception as error:  # whatever a user's class raises
+            cause = f"{type(error).__name__}: {error}"
+            yield f"parts.{part.name}", f"{part.shape} with options {part.options} cannot be built: {cause}"
+
+
+def _first_built(
+    part: PartConfig, config: StudyConfig, part_class: type[Part], designs: Sequence[Design]
+) -> Part | None:
+    for design in designs:
+        try:
+            return make_part(part, config, part_class, design)
+        except CodesignError:
+            continue
+    return None
+
+
+def _option_problems(part: PartConfig, part_class: type[Part]) -> Iterator[Problem]:
+    taken = inspect.signature(part_class).parameters
+    free = [name for name in taken if name not in part.parameters and name != "density"]
+    if not any(parameter.kind is parameter.VAR_KEYWORD for parameter in taken.values()):
+        for option in part.options:
+            yield from unknown(f"parts.{part.name}.options", f"option of {part.shape}", option, free)
+
+
+def _variant_problems(config: StudyConfig, part_classes: Mapping[str, type[Part]]) -> Iterator[Problem]:
+    """Variants of load and support are the parts' own: one that no part offers would be read by nobody."""
+    for key in ("load", "support"):
+        offered = {name for part_class in part_classes.values() for name in getattr(part_class, f"{key}_variants")}
+        yield from unknown(f"fem.{key}", "variant of any part", getattr(config.fem, key), sorted(offered))
+
+
+def _face_problems(part: PartConfig, config: StudyConfig, built: Part) -> Iterator[Problem]:
+    if type(built).fem_surface is not Part.fem_surface:
+        return  # a surface from elsewhere: its faces are known once it is there
+    named = face_names(built.fem_shape(config.fem.geometry))
+    for face in part.supports:
+        yield from unknown(f"parts.{part.name}.supports", "face", face, named)
+    for load in part.loads:
+        yield from unknown(f"parts.{part.name}.loads", "face", load.face, named)
+        if load.face in part.supports:
+            yield f"parts.{part.name}.loads", f"the load acts on {load.face!r}, which is held"
+
+
+def _place_problems(part: PartConfig, robot: RobotDescription, built: Part) -> Iterator[Problem]:
+    body = PartBody(Inertial(1.0, np.zeros(3), np.eye(3)), built.interfaces())
+    for place in part.placements:
+        key = f"parts.{part.name}.placements"
+        missing = list(unknown(key, "link", place.link, robot.link_names))
+        for joint, attachment in place.joints.items():
+            missing += unknown(f"{key}.joints", "joint", joint, robot.joint_names)
+            missing += unknown(f"{key}.joints.{joint}", "interface", attachment.interface, body.interfaces)
+        yield from missing
+        if not missing:
+            try:
+                assemble(robot, {part.name: [place]}, {part.name: body})
+            except CodesignError as error:
+                yield key, str(error)

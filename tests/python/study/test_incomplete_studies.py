@@ -1,0 +1,99 @@
+"""Studies without what the configuration leaves optional: they fly, are shown and reported, or are refused in words."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from codesign import dynamics as dyn
+from codesign.chain.flight import flight_settings, joint_names
+from codesign.chain.fly import fly_robot
+from codesign.chain.study import Study, load_study
+from codesign.cli import main
+from codesign.errors import ExecutionError
+from codesign.report.compute import history
+from codesign.report.page.encode import _flight as page_of_flight
+from codesign.study import new_study
+from codesign.viewer.viewer import Viewer
+
+
+def edited(folder, *replacements: tuple[str, str]) -> Study:
+    """The template study with a flight of 1.6 s, after text replacements."""
+    new_study(folder)
+    file = folder / "study.toml"
+    text = file.read_text().replace("duration_s = 20.0", "duration_s = 1.6")
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new, 1)
+    file.write_text(text)
+    return load_study(folder)
+
+
+def without_ground(folder) -> Study:
+    edited(folder)
+    file = folder / "study.toml"
+    text = file.read_text()
+    start, end = text.index("[flight.ground]"), text.index("# A command acts")
+    file.write_text(text[:start] + text[end:])
+    return load_study(folder)
+
+
+def test_a_robot_without_ground_contacts_flies_on_the_command_line(tmp_path, capsys):
+    study = without_ground(tmp_path / "study")
+    assert main.fly(study.path.parent / "robot.urdf", study=str(study.path)) == 0
+    rows = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    assert rows["min_clearance"].strip() == "-"
+    assert float(rows["max_thrust"]) > 0.0
+
+
+def test_a_flight_that_is_lost_at_once_is_a_json_document(tmp_path):
+    study = edited(tmp_path / "study", ("com_error_m = 2.0", "com_error_m = 1e-9"))
+    document = fly_robot(study, study.path.parent / "robot.urdf")
+    assert document["status"] == "lost"
+    json.dumps(document, allow_nan=False)
+
+
+def test_histories_of_a_study_that_weights_no_joints(tmp_path):
+    study = edited(tmp_path / "study", ("velocity_weight = 1.0", ""))
+    flight = study.config.flight
+    trajectory = study.config.trajectories[flight.trajectory]
+    robot = dyn.load_urdf(study.path.parent / "robot.urdf", joints=joint_names(flight))
+    log = dyn.simulate_flight(robot, flight_settings(flight, trajectory))
+    shown = history(flight, flight.trajectory, log)
+    assert shown["joint_velocity_error"].shape == (len(shown["time"]), 0)
+    assert [chart["label"] for chart in page_of_flight(shown)["charts"]] == [
+        "Position error", "Attitude error", "Jet thrusts",
+    ]  # fmt: skip
+    weighted = history(load_study("gimbal_quad").config.flight, flight.trajectory, log)
+    assert weighted["joint_velocity_error"].shape == (len(shown["time"]), 1)
+    np.testing.assert_array_equal(weighted["com_error"], shown["com_error"])
+
+
+def test_without_viser_the_viewer_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "viser", None)
+    with pytest.raises(ExecutionError, match=r"pip install 'codesign\[view\]'"):
+        Viewer(None, [], {}, None, None, "127.0.0.1", 8080, None)
+
+
+def test_square_brackets_of_a_message_are_printed(tmp_path, monkeypatch, capsys):
+    folder = tmp_path / "my[bold]study"
+    folder.mkdir()
+    (folder / "file").write_text("x")
+    monkeypatch.setattr(sys, "argv", ["codesign", "new", str(folder)])
+    with pytest.raises(SystemExit) as end:
+        main.main()
+    assert end.value.code == 2
+    assert f"{folder}: exists and is not empty" in capsys.readouterr().err
+
+
+def test_an_edited_study_is_loaded_anew(tmp_path):
+    first = edited(tmp_path / "study")
+    assert load_study(first.path) is load_study(first.path)
+    first.path.write_text(first.path.read_text().replace("max_thrust_n = 250.0", "max_thrust_n = 260.0"))
+    second = load_study(first.path)
+    assert second.config.flight.jets.max_thrust_n == 260.0
+    assert second.hash != first.hash
+    robot = first.path.parent / "robot.urdf"
+    robot.write_text(robot.read_text().replace("</robot>", "<!-- edited --></robot>"))
+    assert load_study(first.path).hash != second.hash
