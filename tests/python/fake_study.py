@@ -29,6 +29,8 @@ class Optimizer:
     generations: int = 5
     crossover_probability: float = 0.9
     mutation_probability: float = 0.25
+    algorithm: str = "nsga2"
+    seed: int = 1
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,6 @@ class FakeStudy:
     name = "fake"
     loader = "fake_study:load"
     objectives = ("near", "far")
-    optimizer = Optimizer()
 
     def __init__(self, source: str) -> None:
         options: dict[str, Any] = json.loads(source)
@@ -59,6 +60,7 @@ class FakeStudy:
             tuple(Variable(name, 0.0, 0.5 * (n - 1), 0.5, "mm") for name, n in zip("abcdefgh", levels, strict=False))
         )
         self.execution = Execution(**options.get("execution", {}))
+        self.optimizer = Optimizer(**options.get("optimizer", {}))
 
     def evaluate(self, design: Any, trajectory: str | None = None, cache: Any = None) -> Evaluation:
         design = dict(design)

@@ -97,7 +97,9 @@ def _evaluate(
     clearances = _clearances(config, parts, robot, flight)
     document = {
         "parts": documents,
-        "flight": flight_document(trajectory or config.flight.trajectory, flight, result.seconds["flight"])
+        "flight": flight_document(
+            trajectory or config.flight.trajectory, flight, config.flight.duration_s, result.seconds["flight"]
+        )
         | ({"interference": clearances} if clearances else {}),
         "objective_families": objective_families(flight) if flight.completed else {},
     }

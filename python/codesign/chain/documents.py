@@ -9,6 +9,8 @@ from codesign import dynamics as dyn
 from codesign.problem.quantities import FAMILY
 from codesign.study.config import StudyConfig
 
+SHORTEST_MISS = 1e-6  # of a flight that was lost in its last sample
+
 
 def objective_families(log: dyn.FlightLog) -> dict[str, dict[str, float]]:
     """All objective families of a flight; a number that is not finite is left out."""
@@ -20,8 +22,12 @@ def objective_families(log: dyn.FlightLog) -> dict[str, dict[str, float]]:
     return families
 
 
-def flight_document(trajectory: str, log: dyn.FlightLog, seconds: float) -> dict[str, Any]:
-    """Tracking figures of a flight for JSON, SI units; None for a number that is not finite."""
+def flight_document(trajectory: str, log: dyn.FlightLog, wanted: float, seconds: float) -> dict[str, Any]:
+    """Tracking figures of a flight for JSON, SI units; None for a number that is not finite.
+
+    wanted: duration of the whole flight [s]; missed_share is the part of it that a lost flight did not last.
+    seconds: processor time.
+    """
     document: dict[str, Any] = {"trajectory": trajectory, "duration": (log.samples - 1) * log.step}
     for name in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust", "max_torque", "min_clearance"):
         value = getattr(log, name)
@@ -29,7 +35,9 @@ def flight_document(trajectory: str, log: dyn.FlightLog, seconds: float) -> dict
     document["ground_touched"] = bool(log.ground_touched)
     document["qp_failures"] = log.qp_failures
     document["completed"] = log.completed
+    document["missed_share"] = 0.0
     if not document["completed"]:
+        document["missed_share"] = max(1.0 - (log.failure_time or 0.0) / wanted, SHORTEST_MISS)
         document["failure_time"] = log.failure_time
         document["failure_reason"] = log.failure_reason
     document["seconds"] = seconds

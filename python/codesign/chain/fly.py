@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families, objective_parts
 from codesign.chain.flight import find_trajectory, flight_settings, joint_names
-from codesign.chain.judge import loss
+from codesign.chain.judge import FLIGHT_MISSED, loss
 from codesign.chain.provenance import provenance
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def fly_robot(
     log = dyn.simulate_flight(model, settings)
     end = time.perf_counter()
     completed = log.completed
-    document = flight_document(trajectory or config.flight.trajectory, log, end - loaded)
+    document = flight_document(trajectory or config.flight.trajectory, log, config.flight.duration_s, end - loaded)
     return {
         "robot": str(robot),
         "status": "completed" if completed else "lost",
@@ -50,7 +50,7 @@ def fly_robot(
             "rms": objective_parts(log, "rms", config),
             "script": objective_parts(log, "script", config),
         },
-        "constraints": {"qp_failures": log.qp_failures},
+        "constraints": {FLIGHT_MISSED: document["missed_share"]},
         "flight": document,
         "seconds": {"load": loaded - start, "flight": end - loaded, "total": end - start},
         "provenance": provenance(study.hash),

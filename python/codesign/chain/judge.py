@@ -14,7 +14,7 @@ from codesign.study.config import StudyConfig
 from codesign.units import MILLIMETRE
 
 CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a safety factor of zero
-SHORTEST_MISS = 1e-6  # of a flight that was lost in its last sample
+FLIGHT_MISSED = "flight_missed_share"  # of two lost designs the one that flew longer violates less
 
 Functions = Mapping[str, Callable[[Mapping[str, Any]], float]]
 Document = Mapping[str, Any]  # parts, flight, objective_families: as in `Evaluation`
@@ -61,7 +61,7 @@ def judge(config: StudyConfig, document: Document, functions: Functions) -> Verd
     """
     flight = document["flight"]
     lost = not flight["completed"]
-    constraints = {"qp_failures": float(max(flight["qp_failures"], int(lost)))}
+    constraints: dict[str, float] = {}
     violations: dict[str, float] = {}
     reasons = []
     for limit in limits(config):
@@ -72,12 +72,8 @@ def judge(config: StudyConfig, document: Document, functions: Functions) -> Verd
             continue
         violation = limit.violation(value)
         violations[limit.quantity.key] = max(violation, violations.get(limit.quantity.key, 0.0))
-        if violation > 0.0:
+        if violation > 0.0 and limit.quantity.key != FLIGHT_MISSED:
             reasons += misses(document, limit, value)
-    if config.constraints.flight_completed:
-        # The share of the flight that was missed: of two lost designs the one that flew longer is better.
-        flown = (flight.get("failure_time") or 0.0) / config.flight.duration_s
-        violations["qp_failures"] = max(1.0 - flown, SHORTEST_MISS) if lost else 0.0
     if lost:
         reasons.append(loss(flight))
     constraints |= watched(document, constraints)
@@ -107,8 +103,9 @@ def objectives(config: StudyConfig, document: Document, functions: Functions) ->
 
 
 def limits(config: StudyConfig) -> Iterator[Limit]:
-    """Everything that the study demands of a completed flight."""
+    """Everything that a study demands: a completed flight, and what its [constraints] say."""
     asked = config.constraints
+    yield Limit(quantity(FLIGHT_MISSED), most=0.0)
     for key, least in asked.part_minima.items():
         yield Limit(quantity(key), least=least, scale=least)
     if config.interference is not None:

@@ -118,11 +118,13 @@ def optimize(
     study: StudyOption = DEFAULT_STUDY,
     population: Annotated[int | None, typer.Option(min=2, help="Designs a generation.")] = None,
     generations: Annotated[int | None, typer.Option(min=1, help="Generations, the start population included.")] = None,
-    seed: Annotated[int, typer.Option(help="Decides everything that is random.")] = 1,
+    seed: Annotated[int | None, typer.Option(min=0, help="Decides all that is random; default: the study's.")] = None,
     workers: WorkersOption = None,
     cluster: ClusterOption = None,
     out_dir: Annotated[Path | None, typer.Option("--out", help="New folder of the run.")] = None,
-    algorithm: Annotated[str, typer.Option(help="nsga2, nsga3, agemoea, agemoea2, smsemoa or random.")] = "nsga2",
+    algorithm: Annotated[
+        str | None, typer.Option(help="nsga2, nsga3, agemoea, agemoea2, smsemoa or random; default: the study's.")
+    ] = None,
     start: Annotated[str, typer.Option(help="sobol, sobol-plain (as in the paper) or random.")] = "sobol",
     steady: Annotated[bool, typer.Option(help="Offspring without waiting for whole generations.")] = False,
     wall_time: Annotated[float | None, typer.Option(help="Seconds after which no new design is tried.")] = None,

@@ -185,7 +185,9 @@ def _disturbed(
     log = dyn.simulate_flight(model, settings)
     completed = log.status == dyn.FlightStatus.completed
     family = objective_families(log)[config.objectives.family]
-    figures = {k: v for k, v in flight_document(trajectory, log, 0.0).items() if isinstance(v, float)}
+    figures = {
+        k: v for k, v in flight_document(trajectory, log, config.flight.duration_s, 0.0).items() if isinstance(v, float)
+    }
     return Flight(
         role,
         dict(design),

@@ -14,6 +14,14 @@ class OptimizerDefaults(Protocol):
     """A study's [optimizer]."""
 
     @property
+    def algorithm(self) -> str:
+        """Name of the search."""
+
+    @property
+    def seed(self) -> int:
+        """Decides everything that is random."""
+
+    @property
     def population(self) -> int:
         """Designs of a generation."""
 

@@ -89,6 +89,13 @@ _TABLE = (
         "max(parts.*.max_displacement)",
     ),
     Quantity(
+        "flight_missed_share",
+        "Share of the flight missed",
+        "",
+        "What a lost flight did not last, relative to the whole; 0: completed.",
+        path="flight.missed_share",
+    ),
+    Quantity(
         "qp_failures",
         "Controller failures",
         "",

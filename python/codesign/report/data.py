@@ -148,7 +148,7 @@ class ReportData:
             return None
         difference = self.values[position] - vector
         with np.errstate(divide="ignore"):
-            return np.divide(difference, np.abs(vector), out=np.zeros_like(difference), where=difference != 0.0)
+            return np.asarray(np.divide(difference, np.abs(vector), out=0.0 * difference, where=difference != 0.0))
 
     def find(self, design: Evaluation) -> int | None:
         """Position of an evaluation's design among the entries."""

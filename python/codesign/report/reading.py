@@ -57,7 +57,7 @@ def _limits(study: Any) -> dict[str, tuple[str, float]]:
         sign, bound = (">=", limit.least) if limit.least is not None else ("<=", limit.most)
         if bound is not None:
             bounds[limit.quantity.key] = (sign, bound)
-    return bounds | ({"qp_failures": ("<=", 0.0)} if study.config.constraints.flight_completed else {})
+    return bounds
 
 
 def study_of(directory: Path) -> Any:

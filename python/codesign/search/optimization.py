@@ -13,6 +13,7 @@ from codesign.execution.worker import load
 from codesign.problem.protocols import Problem
 from codesign.search.driver import Loop
 from codesign.search.progress import Progress
+from codesign.search.registry import find_search
 from codesign.search.sampling import sub_grid
 from codesign.search.settings import Settings
 from codesign.storage.cache import SqliteCache, default_cache_path
@@ -44,8 +45,8 @@ def optimize(
     population: int | None = None,
     generations: int | None = None,
     evaluations: int | None = None,
-    seed: int = 1,
-    algorithm: str = "nsga2",
+    seed: int | None = None,
+    algorithm: str | None = None,
     start: str = "sobol",
     first: Sequence[Mapping[str, float]] = (),
     steady: bool = False,
@@ -60,8 +61,8 @@ def optimize(
     Args:
         study: a loaded study, or a shipped study's name or the path of a study file.
         out: folder of the run; must not hold one yet.
-        population, generations: as in the study's [optimizer] unless given; the budget is their product.
-        evaluations: the budget itself, instead of generations.
+        population, generations, seed, algorithm: as in the study's [optimizer] unless given.
+        evaluations: the budget itself, instead of population times generations.
         seed: decides everything that is random.
         algorithm: nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an installed package gives in its
             entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
@@ -81,13 +82,15 @@ def optimize(
     optimizer = study.optimizer
     size = optimizer.population if population is None else population
     count = optimizer.generations if generations is None else generations
+    if algorithm is None:
+        algorithm = _own_algorithm(study)
     settings = Settings(
         algorithm=algorithm,
         population=size,
         evaluations=size * count if evaluations is None else evaluations,
         crossover_probability=optimizer.crossover_probability,
         mutation_probability=optimizer.mutation_probability,
-        seed=seed,
+        seed=optimizer.seed if seed is None else seed,
         start=start,
         first=tuple(study.space.indices(design) for design in first),
         steady=steady,
@@ -97,6 +100,15 @@ def optimize(
         options=dict(options or {}),
     )
     return run_search(study, settings, out, **resources)
+
+
+def _own_algorithm(study: Problem) -> str:
+    name = study.optimizer.algorithm
+    try:
+        find_search(name)
+    except ValueError as error:
+        raise StudyError(f"{study.source}: optimizer.{error}") from error
+    return name
 
 
 def sweep(study: StudyLike, counts: Sequence[int], *, out: str | Path, **resources: Unpack[Resources]) -> Run:

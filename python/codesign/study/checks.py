@@ -154,9 +154,5 @@ def _clearance_problems(config: StudyConfig) -> Iterator[Problem]:
         elif name.startswith("plume") and not measured.plumes.jets:
             yield f"constraints.{name}", "needs jets in [interference.plumes]"
         elif least > measured.report_below_mm:
-            yield (
-                f"constraints.{name}",
-                (
-                    f"{least:g} is above interference.report_below_mm = {measured.report_below_mm:g}: farther is not measured"
-                ),
-            )
+            farthest = f"interference.report_below_mm = {measured.report_below_mm:g}"
+            yield f"constraints.{name}", f"{least:g} is above {farthest}: gaps beyond are not measured"

@@ -303,7 +303,6 @@ class ConstraintsConfig(Section, frozen=True, kw_only=True):
     """
 
     safety_factor_min: Positive = 10.0
-    flight_completed: bool = True
     body_clearance_min_mm: float | None = None
     plume_clearance_min_mm: float | None = None
     first_frequency_min_hz: Positive | None = None
@@ -330,7 +329,7 @@ class ValidationConfig(Section, frozen=True, kw_only=True):
 class OptimizerConfig(Section, frozen=True, kw_only=True):
     """Defaults of the search; the command line overrides them."""
 
-    algorithm: Literal["nsga2", "nsga3", "agemoea", "agemoea2", "smsemoa", "random"] = "nsga2"
+    algorithm: Name = "nsga2"
     population: Annotated[int, Meta(ge=2, le=100_000)] = 25
     generations: Annotated[int, Meta(ge=1, le=1_000_000)] = 40
     crossover_probability: Probability = 0.9

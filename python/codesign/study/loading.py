@@ -44,12 +44,12 @@ def load(source: str | Path, kind: type[AnyStudy]) -> AnyStudy:
     Raises: StudyError with file, key, value and reason.
     """
     path = _locate(source)
-    study: AnyStudy = _load(str(source), path, kind, _content(path, _parse(path)))
-    return study
+    make = cast("Callable[..., StudyData]", kind)
+    return cast("AnyStudy", _load(str(source), path, make, _content(path, _parse(path))))
 
 
 @functools.lru_cache(maxsize=8)
-def _load(source: str, path: Path, kind: type[AnyStudy], _content: str) -> AnyStudy:
+def _load(source: str, path: Path, kind: Callable[..., StudyData], _content: str) -> StudyData:
     raw = _parse(path)
     config = convert(raw, path)
     part_classes = {part.name: _part_class(part, path) for part in config.parts}

@@ -26,8 +26,8 @@ def original(cache):
 def test_original_design_is_feasible(original):
     assert original.status == "feasible", original.reason
     assert original.constraints["safety_factor"] > 10
-    assert original.constraints["qp_failures"] == 0
-    assert original.violations == {"safety_factor": 0.0, "qp_failures": 0.0}
+    assert original.constraints["flight_missed_share"] == 0
+    assert original.violations == {"safety_factor": 0.0, "flight_missed_share": 0.0}
 
 
 def test_original_flight_meets_the_consistent_physics_reference(original):
@@ -44,7 +44,7 @@ def test_document_has_every_promised_key(original):
     document = json.loads(original.to_json())
     assert document["design"] == ORIGINAL
     assert set(document["objectives"]) == {"momentum", "joint_velocity", "thrust"}
-    assert {"safety_factor", "qp_failures"} <= set(document["constraints"])
+    assert {"safety_factor", "flight_missed_share"} <= set(document["constraints"])
     for part in ("jetpack_bracket", "forearm_support"):
         assert {
             *("mass", "com", "inertia", "safety_factor", "peak_stress", "stress_50", "stress_error"),
@@ -86,7 +86,7 @@ def test_steep_bracket_loses_the_flight_and_stays_without_objectives(cache):
     assert lost.status == "infeasible"
     assert re.match(r"flight lost at [1-9]\.", lost.reason or "")
     assert lost.objectives == {}
-    assert lost.violations["qp_failures"] == pytest.approx(1 - lost.flight["failure_time"] / 42.0)
+    assert lost.violations["flight_missed_share"] == pytest.approx(1 - lost.flight["failure_time"] / 42.0)
 
 
 def test_evaluate_at_the_top_level_takes_names_or_a_sequence():

@@ -15,7 +15,7 @@ PARTS = {
     "rod": {"mass": 0.4, "safety_factor": 12.0, "buckling_factor": None, "frequencies": [80.0, 91.0]},
     "plate": {"mass": 0.6, "safety_factor": 30.0, "buckling_factor": 55.0, "frequencies": [120.0, 140.0]},
 }
-FLIGHT = {"completed": True, "qp_failures": 0, "max_torque": 60.0, "max_com_error": None}
+FLIGHT = {"completed": True, "missed_share": 0.0, "qp_failures": 0, "max_torque": 60.0, "max_com_error": None}
 DOCUMENT = {
     "parts": PARTS,
     "flight": FLIGHT,
@@ -97,8 +97,8 @@ def test_own_functions_of_an_evaluation(tmp_path):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ('minimise = ["momentun"]', "did you mean momentum"),
-        ('minimise = ["parts.strutt.mass"]', "no part 'strutt'; there are strut"),
+        ('minimise = ["momentun"]', "did you mean 'momentum'"),
+        ('minimise = ["parts.strutt.mass"]', "no part 'strutt'; did you mean 'strut'"),
         ('minimise = ["mass", "mass"]', "named twice"),
         ("minimise = []", "one to 6"),
         ('minimise = ["costs:price"]', "No module named 'costs'"),
@@ -110,3 +110,14 @@ def test_wrong_names_are_refused_before_anything_runs(tmp_path, line, message):
     file.write_text(file.read_text().replace(MINIMISED, line))
     with pytest.raises(StudyError, match=message):
         load_study(file)
+
+
+def test_a_lost_flight_is_infeasible_by_the_share_it_missed(config):
+    lost = FLIGHT | {"completed": False, "missed_share": 0.75, "failure_time": 5.0, "failure_reason": "too far"}
+    verdict = judge(asked(config), DOCUMENT | {"flight": lost, "objective_families": {}}, {})
+    assert verdict.status == "infeasible"
+    assert verdict.objectives == {}
+    assert verdict.violations["flight_missed_share"] == verdict.constraints["flight_missed_share"] == 0.75
+    assert verdict.reason == "flight lost at 5.00 s: too far"
+    document = DOCUMENT | {"flight": FLIGHT | {"qp_failures": 3}}  # steps without a solution alone lose no flight
+    assert judge(asked(config), document, {}).status == "feasible"

@@ -23,8 +23,8 @@ def evaluation(momentum: float, violation: float = 0.0, reason: str | None = Non
         reason=reason,
         objectives={"momentum": momentum},
         objective_families={"rms": {"momentum": momentum, "thrust": 10 * momentum}},
-        constraints={"safety_factor": 12.0, "qp_failures": violation},
-        violations={"qp_failures": violation},
+        constraints={"safety_factor": 12.0, "flight_missed_share": violation},
+        violations={"flight_missed_share": violation},
         seconds={"flight": 0.5},
     )
 
@@ -44,12 +44,12 @@ def test_one_violation_makes_the_design_infeasible() -> None:
     results = {"hover": evaluation(1.0), "walk": evaluation(4.0, 0.25, "lost"), "turn": evaluation(1.0, 0.125)}
     result = aggregate(results, "worst")
     assert result.status == "infeasible"
-    assert result.violations == {"qp_failures": 0.25}
+    assert result.violations == {"flight_missed_share": 0.25}
     assert result.constraints == {
         "safety_factor": 12.0,
-        "qp_failures@hover": 0.0,
-        "qp_failures@walk": 0.25,
-        "qp_failures@turn": 0.125,
+        "flight_missed_share@hover": 0.0,
+        "flight_missed_share@walk": 0.25,
+        "flight_missed_share@turn": 0.125,
     }
     assert result.reason == "walk: lost"
 

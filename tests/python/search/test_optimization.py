@@ -1,11 +1,11 @@
 """Searches as a whole: determinism, duplicates, stopping, what runs hold."""
 
-import math
 import random
 
 import numpy as np
 import pytest
 
+from codesign.errors import StudyError
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import non_dominated
 from codesign.search.optimization import evaluate_designs, optimize, sweep
@@ -142,6 +142,18 @@ def test_cache_makes_the_second_run_identical_without_evaluations(tmp_path, stea
     assert all(record.cached for record in second.records)
 
 
+def test_what_the_caller_leaves_out_is_the_studys(tmp_path) -> None:
+    own = study(optimizer={"algorithm": "random", "seed": 7, "population": 4, "generations": 2})
+    run = optimize(own, out=tmp_path / "own", cache=None, workers=1)
+    wanted = {"algorithm": "random", "seed": 7, "population": 4, "evaluations": 8}
+    assert {key: run.settings[key] for key in wanted} == wanted
+    given = optimize(own, out=tmp_path / "given", cache=None, workers=1, algorithm="nsga2", seed=3, evaluations=4)
+    assert (given.settings["algorithm"], given.settings["seed"]) == ("nsga2", 3)
+    with pytest.raises(StudyError, match=r"optimizer.algorithm = 'nsga4': no such search; did you mean 'nsga"):
+        optimize(study(optimizer={"algorithm": "nsga4"}), out=tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+
+
 def test_given_designs_open_the_start_population(tmp_path) -> None:
     original = {"a": 3.0, "b": 2.5, "c": 1.0}
     run = optimize(study(), out=tmp_path / "run", cache=None, generations=1, first=[original])
@@ -185,4 +197,3 @@ def test_wrong_settings_are_refused_before_anything_is_written(tmp_path, setting
 def test_non_dominated_keeps_equal_rows() -> None:
     values = np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]])
     assert non_dominated(values).tolist() == [True, True, True, False, True]
-    assert math.isfinite(values.sum())

@@ -8,7 +8,7 @@ from codesign.chain.study import load_study
 from codesign.errors import StudyError
 from codesign.robot.table import generated_urdf
 from codesign.storage.cache import MemoryCache
-from codesign.study import load, new_study, shipped_studies
+from codesign.study import new_study, shipped_studies
 from codesign.study.loading import STUDIES
 
 BASELINE = "# The design that reports compare with.\n[baseline]"
@@ -101,7 +101,6 @@ def test_paper_grid():
         ("step_s = 0.008", "step_s = 0.007", "flight.duration_s: 20 is not a whole number of steps of 0.007 s"),
         ("[flight.gains]", "[flight.gain]", r"flight: unknown key 'gain'; did you mean 'gains'|'gains' is missing"),
         ("population = 16", "poulation = 16", "optimizer: unknown key 'poulation'; did you mean 'population'"),
-        ("population = 16", 'algorithm = "nsga4"', "optimizer.algorithm: 'nsga4' is not possible; did you mean 'nsga"),
         (
             "safety_factor_min",
             "body_clearance_min_mm = 3\nsafety_factor_min",

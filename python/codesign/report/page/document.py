@@ -28,7 +28,7 @@ def page_document(
     run: ReportData, details: dict[str, Any] | None = None, files: dict[str, Any] | None = None
 ) -> dict[str, Any]:
     """Everything the page shows, as JSON values. details, files: by `detail_key`."""
-    constraints = [key for key in _constraint_keys(run) if key != "qp_failures" or _any_nonzero(run, key)]
+    constraints = [key for key in _constraint_keys(run) if key != "flight_missed_share" or _any_nonzero(run, key)]
     parts = list(dict.fromkeys(name for e in run.entries for name in e.evaluation.parts))
     front = set(run.front)
     rows = [
