@@ -16,6 +16,7 @@ from typing import Any
 
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.identity import Identity
 
 Values = tuple[tuple[float, float, float], float]  # objectives, constraint violation
 
@@ -78,6 +79,7 @@ class StandIn:
         options: dict[str, Any] = json.loads(source)
         self.source = source
         self.hash = hashlib.sha256(source.encode()).hexdigest()[:16]
+        self.identity = Identity({"source": self.hash})
         self.problem = PROBLEMS[options.get("problem", "smooth")]
         self.seconds, self.spread = options.get("seconds", 0.0), options.get("spread", 0.0)
         levels = options.get("levels", [79, 31, 21, 51])  # as the shipped study's

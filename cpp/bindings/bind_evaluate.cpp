@@ -5,6 +5,7 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/evaluate.hpp"
+#include "fem/la/linked_libraries.hpp"
 
 namespace py = pybind11;
 using py::literals::operator""_a;
@@ -91,6 +92,9 @@ void bind_evaluate(py::module_& m) {
                                                   {"build type", CODESIGN_BUILD_TYPE}};
       },
       "What the module was built with.");
+  m.def("linked_libraries", &fem::linked_libraries,
+        "Versions of the shared libraries that decide digits, as loaded: CHOLMOD, OpenBLAS and its "
+        "kernel, C library.");
   m.def("evaluate", &evaluate, "parts"_a, "urdf"_a, "flight"_a,
         py::call_guard<py::gil_scoped_release>(),
         "Meshes and solves every part, loads the robot and flies it: the native half of the chain "

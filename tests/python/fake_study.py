@@ -2,7 +2,7 @@
 
 `source` is a JSON object: seconds (time of an evaluation), jitter (random time on top), faults (grid point "0,1,2" ->
 what it does to its process), levels, log (a file that gets a line per evaluation), hash, execution, unconstrained (all
-designs are feasible), by_trajectory (the trajectory's name decides, too).
+designs are feasible), libraries (versions of its identity), by_trajectory (the trajectory's name decides, too).
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from typing import Any
 
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.identity import Identity
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ class FakeStudy:
         options: dict[str, Any] = json.loads(source)
         self.source = source
         self.hash = options.get("hash") or hashlib.sha256(source.encode()).hexdigest()[:16]
+        self.identity = Identity({"source": self.hash}, options.get("libraries", {}))
         self.seconds = options.get("seconds", 0.0)
         self.jitter = options.get("jitter", 0.0)
         self.faults = options.get("faults", {})

@@ -10,6 +10,7 @@ from codesign.chain.study import load_study
 from codesign.execution.pool import StudyRef
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.identity import Identity
 from codesign.storage.store import Record, RunStore
 
 SPACE = DesignSpace(
@@ -129,6 +130,7 @@ class Study:
     description = "Two parts carry the jets of a flying humanoid. Four numbers shape them."
     space, baseline = SPACE, SPACE.design(BASELINE)
     objectives = ("momentum", "joint_velocity", "thrust")
+    identity = Identity({"study file": "5f2c9e77aa10"})
 
     def __getattr__(self, name: str) -> Any:
         return getattr(load_study("ironcub"), name)
@@ -142,7 +144,7 @@ def write_run(
     folder: Path, finished: list[Evaluation], *, planned: int | None = None, ended: bool = True, study: Any = None
 ) -> Path:
     """A run's store holding `finished` evaluations of `planned`; study: whose run it says to be."""
-    ref = StudyRef.of(study) if study is not None else StudyRef("synthetic", Study.hash)
+    ref = StudyRef.of(study) if study is not None else StudyRef("synthetic", Study.hash, identity=Study.identity)
     settings = {"algorithm": "nsga2", "seed": 1, "population": 25, "evaluations": planned or len(finished)}
     meta = {
         "study": {"name": "synthetic", "source": ref.source, "loader": ref.loader, "hash": ref.hash},

@@ -19,6 +19,7 @@ __all__: list[str] = [
     "evaluate",
     "fem",
     "library_versions",
+    "linked_libraries",
 ]
 
 class PartCase:
@@ -155,4 +156,9 @@ def evaluate(parts: collections.abc.Sequence[PartCase], urdf: str, flight: dynam
 def library_versions() -> dict[str, str]:
     """
     What the module was built with.
+    """
+
+def linked_libraries() -> dict[str, str]:
+    """
+    Versions of the shared libraries that decide digits, as loaded: CHOLMOD, OpenBLAS and its kernel, C library.
     """

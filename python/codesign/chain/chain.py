@@ -51,7 +51,7 @@ def evaluate(
     try:
         return _evaluate(study, design, trajectory, cache)[0]
     except CodesignError as error:
-        return Evaluation.failure(design.to_dict(), f"{type(error).__name__}: {error}", provenance(study.hash))
+        return Evaluation.failure(design.to_dict(), f"{type(error).__name__}: {error}", provenance(study))
 
 
 def evaluate_with_fields(
@@ -113,7 +113,7 @@ def _evaluate(
         violations=verdict.violations,
         **document,
         seconds={"geometry": built - start, **result.seconds, "total": time.perf_counter() - start},
-        provenance=provenance(study.hash),
+        provenance=provenance(study),
     )
     return evaluation, result
 

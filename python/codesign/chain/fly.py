@@ -53,5 +53,5 @@ def fly_robot(
         "constraints": {FLIGHT_MISSED: document["missed_share"]},
         "flight": document,
         "seconds": {"load": loaded - start, "flight": end - loaded, "total": end - start},
-        "provenance": provenance(study.hash),
+        "provenance": provenance(study),
     }

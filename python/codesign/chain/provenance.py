@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import codesign
+from codesign.study import StudyData
 
 
 @functools.cache
@@ -27,11 +28,12 @@ def source_commit() -> str | None:
         return None
 
 
-def provenance(study_hash: str) -> dict[str, Any]:
+def provenance(study: StudyData) -> dict[str, Any]:
     """What is stored with every evaluation."""
     return {
         "version": codesign.__version__,
-        "study_hash": study_hash,
+        "study_hash": study.hash,
+        "libraries": dict(study.identity.libraries),
         "commit": source_commit(),
         "machine": platform.node(),
     }

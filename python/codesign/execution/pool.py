@@ -25,6 +25,7 @@ from typing import IO, Any, Protocol, Self
 from codesign.errors import ExecutionError
 from codesign.execution.worker import LENGTH, write_message
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.identity import Identity
 from codesign.problem.protocols import Problem
 
 DEFAULT_LOADER = "codesign.chain.study:load_study"
@@ -39,16 +40,17 @@ ONE_THREAD = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", 
 
 @dataclass(frozen=True, slots=True)
 class StudyRef:
-    """How a worker finds the study, and the hash it must have there."""
+    """How a worker finds the study, and the identity it must have there."""
 
     source: str
     hash: str
     loader: str = DEFAULT_LOADER
+    identity: Identity = field(default=Identity(), compare=False)
 
     @classmethod
     def of(cls, study: Problem) -> StudyRef:
         """Reference to a study object; its `loader` attribute, if any, names another `module:function`."""
-        return cls(study.source, study.hash, getattr(study, "loader", DEFAULT_LOADER))
+        return cls(study.source, study.hash, getattr(study, "loader", DEFAULT_LOADER), study.identity)
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,7 +238,11 @@ class LocalPool:
             raise ExecutionError(f"a worker cannot load the study {self._study.source}: {message['error']}")
         if "ready" in message:
             if message["ready"] != self._study.hash:
-                raise ExecutionError(f"the study {self._study.source} has changed since it was loaded: start again")
+                there = Identity.from_document(message["identity"])
+                raise ExecutionError(
+                    f"the study {self._study.source} is another for the worker {worker.name} than for this run: "
+                    f"{self._study.identity.differences(there)}; start again, with the same program everywhere"
+                )
             worker.ready, worker.deadline, self._failed_starts = True, float("inf"), 0
             return
         task = worker.task

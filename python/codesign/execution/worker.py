@@ -120,7 +120,7 @@ def main(arguments: list[str]) -> None:
         traceback.print_exc()
         write_message(answers, {"error": f"{type(error).__name__}: {error}"})
         return
-    write_message(answers, {"ready": study.hash})
+    write_message(answers, {"ready": study.hash, "identity": study.identity.document()})
     limit_memory(int(memory_mib))
     while True:
         task = tasks.get()

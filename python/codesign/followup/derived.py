@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from codesign.execution.pool import StudyRef
 from codesign.execution.worker import load
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.identity import Identity
 from codesign.problem.protocols import ExecutionDefaults, OptimizerDefaults, Problem
 from codesign.storage.cache import PartCache
 
@@ -42,7 +42,13 @@ class DerivedStudy:
     @property
     def hash(self) -> str:
         """Of the study and of what was changed."""
-        return hashlib.sha256(json.dumps([self.study.hash, self.changes]).encode()).hexdigest()[:16]
+        return self.identity.hash
+
+    @property
+    def identity(self) -> Identity:
+        """The study's, and what was changed."""
+        of = self.study.identity
+        return Identity({**of.sources, "variant": json.dumps(self.changes, sort_keys=True)}, of.libraries)
 
     @property
     def space(self) -> DesignSpace:

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.identity import Identity
 from codesign.storage.cache import PartCache
 
 
@@ -72,6 +73,10 @@ class Problem(Protocol):
     @property
     def hash(self) -> str:
         """Of everything that decides a result."""
+
+    @property
+    def identity(self) -> Identity:
+        """Everything that decides a result, by name."""
 
     @property
     def space(self) -> DesignSpace:

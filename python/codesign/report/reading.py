@@ -9,6 +9,7 @@ from typing import Any
 from codesign.chain.judge import limits
 from codesign.errors import CodesignError
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.identity import Identity
 from codesign.problem.quantities import words
 from codesign.report.data import Entry, ReportData
 from codesign.report.details import load_details
@@ -95,9 +96,10 @@ def _notes(run: Run, study: Any) -> tuple[str, ...]:
     if study is None:
         return ("The study of this run cannot be loaded any more: titles, limits and the original design are missing.",)
     if study.hash != run.study["hash"]:
+        changes = Identity.from_document(run.study.get("identity")).differences(study.identity)
         return (
-            "The study, or the program, has changed since this run: its numbers are those of the older version, and "
-            "only stored ones are shown.",
+            f"The study, or the program, has changed since this run ({changes}): its numbers are those of the older "
+            "version, and only stored ones are shown.",
         )
     return ()
 

@@ -8,17 +8,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import platform
-import socket
 import sys
 import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
-from codesign import __version__
 from codesign.errors import StoreError
 from codesign.execution.pool import Executor, Outcome, Task
 from codesign.problem.evaluation import Evaluation
@@ -26,6 +21,7 @@ from codesign.problem.pareto import FrontTracker
 from codesign.problem.protocols import Problem
 from codesign.search.base import Grid, Search
 from codesign.search.progress import Progress
+from codesign.search.provenance import session_provenance
 from codesign.storage.cache import PartCache
 from codesign.storage.store import Generation, Record, RunStore
 
@@ -123,7 +119,7 @@ class Loop:
 
     def run(self, executor: Callable[[], Executor]) -> None:
         """Goes on until the search ends; on any exception leaves the store ready to be resumed."""
-        self._session = self._store.start_session(_provenance(self._study))
+        self._session = self._store.start_session(session_provenance(self._study))
         workers: Executor | None = None
         outcome = "stopped by an error"
         try:
@@ -321,25 +317,3 @@ def checked(evaluation: Evaluation, objectives: tuple[str, ...]) -> Evaluation:
     elif evaluation.status == "infeasible" and not evaluation.total_violation > 0:
         problem = "infeasible without a violated constraint"
     return Evaluation.failure(evaluation.design, f"inconsistent result: {problem}") if problem else evaluation
-
-
-def _provenance(study: Problem) -> dict[str, Any]:
-    """Where and with what a session runs."""
-    from importlib import metadata
-
-    versions = {}
-    for package in ("numpy", "scipy", "pymoo"):
-        try:
-            versions[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            versions[package] = "missing"
-    return {
-        "version": __version__,
-        "study_hash": study.hash,
-        "host": socket.gethostname(),
-        "pid": os.getpid(),
-        "machine": platform.platform(),
-        "processors": os.cpu_count(),
-        "python": platform.python_version(),
-        "packages": versions,
-    }

@@ -10,9 +10,11 @@ from typing import Any, TypedDict, Unpack
 from codesign.errors import StudyError
 from codesign.execution.pool import DEFAULT_LOADER, Executor, Limits, LocalPool, StudyRef
 from codesign.execution.worker import load
+from codesign.problem.identity import Identity
 from codesign.problem.protocols import Problem
 from codesign.search.driver import Loop
 from codesign.search.progress import Progress
+from codesign.search.provenance import check_search, search_identity
 from codesign.search.registry import find_search
 from codesign.search.sampling import sub_grid
 from codesign.search.settings import Settings
@@ -132,7 +134,14 @@ def run_search(study: Problem, settings: Settings, out: str | Path, **resources:
     ref = StudyRef.of(study)
     cache = cache_path(study, resources)
     meta = {
-        "study": {"name": study.name, "source": ref.source, "loader": ref.loader, "hash": ref.hash},
+        "study": {
+            "name": study.name,
+            "source": ref.source,
+            "loader": ref.loader,
+            "hash": ref.hash,
+            "identity": ref.identity.document(),
+        },
+        "search": search_identity(settings.algorithm).document(),
         "variables": [asdict(variable) for variable in study.space.variables],
         "objectives": list(study.objectives),
         "settings": settings.document(),
@@ -163,6 +172,7 @@ def resume(
     with RunStore.open(out) as store:
         study = stored_study(store, study)
         settings = Settings.from_document(store.meta["settings"])
+        check_search(store.meta.get("search"), settings.algorithm, store.path.parent)
         if evaluations is not None:
             settings = replace(settings, evaluations=evaluations)
             store.set_meta("settings", settings.document())
@@ -182,8 +192,9 @@ def stored_study(store: RunStore, study: Problem | None = None) -> Problem:
         study = load(known["loader"], known["source"])
     if study.hash != known["hash"]:
         raise StudyError(
-            f"{known['source']}: the study, or the program, has changed since {store.path.parent} was started, so new "
-            "rows would not be comparable with its own: start a new run (the cache keeps what is unchanged)"
+            f"{known['source']}: the study, or the program, has changed since {store.path.parent} was started "
+            f"({Identity.from_document(known.get('identity')).differences(study.identity)}), so new rows would not be "
+            "comparable with its own: start a new run (the cache keeps what is unchanged), or undo the change"
         )
     return study
 

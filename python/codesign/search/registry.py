@@ -54,16 +54,22 @@ class SearchKind:
         return self.options(**given)
 
 
-def find_search(name: str) -> SearchKind:
-    """The search of a name. Raises: ValueError: there is none, or it cannot be imported."""
+def search_address(name: str) -> str:
+    """`module:attribute` of the search of a name. Raises: ValueError: there is none."""
     others = {point.name: point.value for point in entry_points(group=ENTRY_POINTS)} if name not in BUILT_IN else {}
     address = BUILT_IN.get(name) or others.get(name) or name
-    module, colon, attribute = address.partition(":")
-    if not colon:
+    if ":" not in address:
         known = [*BUILT_IN, *others]
         near = difflib.get_close_matches(name, known, n=1)
         hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}; or module:attribute"
         raise ValueError(f"algorithm = {name!r}: no such search; {hint}")
+    return address
+
+
+def find_search(name: str) -> SearchKind:
+    """The search of a name. Raises: ValueError: there is none, or it cannot be imported."""
+    address = search_address(name)
+    module, _, attribute = address.partition(":")
     try:
         kind = getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError) as error:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import functools
 import hashlib
 import importlib
-import importlib.util
-import sys
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from itertools import chain
@@ -22,10 +20,12 @@ from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, reference_problems
 from codesign.study.config import PartConfig, RawStudy, StudyConfig
 from codesign.study.conversion import convert
-from codesign.study.fingerprint import PACKAGE, code_hash, study_hash
+from codesign.study.fingerprint import study_identity
 from codesign.study.flight_checks import flight_problems, robot_problems
+from codesign.study.imports import PACKAGE
 from codesign.study.parts import built_problems
 from codesign.study.study import StudyData
+from codesign.study.user_modules import import_beside, module_file
 
 STUDIES = PACKAGE / "studies"
 AnyStudy = TypeVar("AnyStudy", bound=StudyData)
@@ -59,7 +59,7 @@ def _load(source: str, path: Path, kind: Callable[..., StudyData], _content: str
         robot = RobotDescription.load(path.parent / config.robot.urdf)
     except UrdfError as error:
         raise StudyError(f"{path}: robot.urdf: {error}") from error
-    code = code_hash({cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()})
+    modules = {cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()}
     space = DesignSpace(tuple(Variable(n, v.minimum, v.maximum, v.step, v.unit) for n, v in config.variables.items()))
     study = kind(
         source=source if source in shipped_studies() else str(path),
@@ -70,8 +70,7 @@ def _load(source: str, path: Path, kind: Callable[..., StudyData], _content: str
         part_classes=part_classes,
         functions=functions,
         base_robot=robot,
-        hash=study_hash(raw, path, code),
-        code_hash=code,
+        identity=study_identity(raw, path, modules),
     )
     _check_designs(study)
     return study
@@ -172,22 +171,8 @@ def _part_class(part: PartConfig, path: Path) -> type[Part]:
 
 def _load_module(name: str, folder: Path) -> ModuleType:
     """A module beside the study file, else an importable one."""
-    file = folder / f"{name}.py"
-    if not file.is_file():
+    if module_file(folder, name.partition(".")[0]) is None:
         return importlib.import_module(name)
     if folder.is_relative_to(PACKAGE):
         return importlib.import_module(".".join(("codesign", *folder.relative_to(PACKAGE).parts, name)))
-    unique = f"codesign_study_{hashlib.sha256(str(file).encode()).hexdigest()[:12]}_{name}"
-    if unique in sys.modules:
-        return sys.modules[unique]
-    spec = importlib.util.spec_from_file_location(unique, file)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{file} cannot be loaded")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[unique] = module
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[unique]
-        raise
-    return module
+    return import_beside(folder, name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -10,9 +11,11 @@ from typing import Any
 
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignSpace
+from codesign.problem.identity import Identity
 from codesign.robot.description import RobotDescription
 from codesign.study.config import RawStudy, StudyConfig
 from codesign.study.conversion import convert, replace_number
+from codesign.study.fingerprint import part_identity
 
 
 @dataclass(frozen=True)
@@ -21,8 +24,7 @@ class StudyData:
 
     source: the name or path it was loaded from (worker processes load it again from there).
     functions: own functions of an evaluation, `module:function`.
-    raw: the parsed TOML, on which design variables with `sets` act. hash: of all that decides a result. code_hash: of
-    the engine and the parts' sources, which with a part's own values and settings decide that part's numbers.
+    raw: the parsed TOML, on which design variables with `sets` act. identity: what decides a result.
     """
 
     source: str
@@ -33,8 +35,17 @@ class StudyData:
     part_classes: dict[str, type[Part]]
     functions: dict[str, Callable[[Mapping[str, Any]], float]]
     base_robot: RobotDescription
-    hash: str
-    code_hash: str
+    identity: Identity
+
+    @functools.cached_property
+    def hash(self) -> str:
+        """Of all that decides a result."""
+        return self.identity.hash
+
+    @functools.cached_property
+    def code_hash(self) -> str:
+        """Of what decides the numbers of a part besides its own values and settings: its code, engine, libraries."""
+        return part_identity(self.identity).hash
 
     @property
     def name(self) -> str:
