@@ -98,12 +98,12 @@ def test_a_run_is_not_continued_with_another_library(tmp_path):
         resume(tmp_path, study=new, evaluations=16)
 
 
-def test_a_search_is_not_continued_with_another_optimiser(tmp_path, monkeypatch):
+def test_a_search_is_not_continued_with_another_optimiser(tmp_path, pretend):
     fake = study()
     optimize(fake, out=tmp_path, generations=1, cache=None, workers=1)
-    true_version = metadata.version
-    monkeypatch.setattr(metadata, "version", lambda name: "0.5" if name == "pymoo" else true_version(name))
-    with pytest.raises(StoreError, match=rf"pymoo was {true_version('pymoo')}, is 0\.5"):
+    installed = metadata.version("pymoo")
+    pretend("pymoo", "0.5")
+    with pytest.raises(StoreError, match=rf"pymoo was {installed}, is 0\.5"):
         resume(tmp_path, study=fake, evaluations=16)
 
 
