@@ -101,9 +101,13 @@ def _positions(run: ReportData, selector: str) -> dict[str, int]:
         raise DesignError(
             f"{selector!r} names no designs: expected recommended, best, front, spread:N, original or a design's number"
         )
-    if run.recommended is None:
+    if not run.front:
         raise DesignError(f"{run.directory} has no feasible design to validate")
     if selector in ("recommended", "knee"):
+        if run.recommended is None:
+            raise DesignError(
+                f"{run.directory} has no design to recommend: every feasible one overlaps bodies or plumes"
+            )
         return {"recommended": run.recommended}
     if selector == "best":
         return {f"lowest {o.label.lower()}": run.best[o.key] for o in run.objectives}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,9 +14,11 @@ from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import non_dominated
 from codesign.problem.quantities import Quantity, words
-from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee
+from codesign.report.objections import Objection, objections
+from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee_distances, late_growth
 
-MOST = 0.93  # of the feasible designs are in view
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+MOST = 0.75  # of the feasible designs are in view, where the front is one design
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +30,15 @@ class Entry:
     generation: int | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class PartWords:
+    """How a part is loaded and held, of what it is made; warning: why its mass and stress do not belong together."""
+
+    load: str
+    material: str
+    warning: str = ""
+
+
 @dataclass(frozen=True)
 class ReportData:
     """A run as the report, the figures and the viewer read it.
@@ -36,6 +48,8 @@ class ReportData:
     limits: constraint -> (sign, limit in SI units), sign ">=" or "<="; the others are only watched.
     provenance: what made the numbers, for people.
     labels: variable -> name for people.   notes: what a reader must know before trusting the numbers.
+    baseline_missing: why there is no baseline.   flight_words: what one flight is.
+    part_words: part -> its load case and material.
     """
 
     directory: Path
@@ -52,6 +66,9 @@ class ReportData:
     labels: dict[str, str] = field(default_factory=dict)
     export_command: str = "codesign export"
     notes: tuple[str, ...] = ()
+    baseline_missing: str = "The study names no original design to compare with."
+    part_words: dict[str, PartWords] = field(default_factory=dict)
+    flight_words: str = ""
 
     def label(self, variable: Variable) -> str:
         """A variable's name for people."""
@@ -98,12 +115,40 @@ class ReportData:
         vector = self.vector(self.baseline)
         return vector if np.isfinite(vector).all() else None
 
+    def objections(self, position: int) -> tuple[Objection, ...]:
+        """What speaks against building an entry."""
+        return objections(self.entries[position].evaluation, self.limits)
+
+    @cached_property
+    def choices(self) -> list[int]:
+        """Positions of the best compromises among the designs that may be built, by the first objective.
+
+        A design with a final objection never is among them; one with another only if there is none without any.
+        """
+        against = {int(i): self.objections(int(i)) for i in np.flatnonzero(self.feasible)}
+        free = [i for i, found in against.items() if not found]
+        free = free or [i for i, found in against.items() if not any(objection.final for objection in found)]
+        if not free:
+            return []
+        best = np.array(free)[non_dominated(self.values[free])]
+        return [int(i) for i in best[np.argsort(self.values[best, 0], kind="stable")]]
+
+    @cached_property
+    def ranking(self) -> list[tuple[int, float]]:
+        """The choices with their distance from the best value of every objective at once, the nearest first.
+
+        Where some are nowhere worse than the baseline, only these.
+        """
+        if not self.choices:
+            return []
+        distance = knee_distances(self.values[self.choices], self.baseline_vector)
+        order = np.argsort(distance, kind="stable")
+        return [(self.choices[i], float(distance[i])) for i in order if np.isfinite(distance[i])]
+
     @cached_property
     def recommended(self) -> int | None:
-        """Position of the design to build: the knee of the front, if possible nowhere worse than the baseline."""
-        if not self.front:
-            return None
-        return self.front[knee(self.values[self.front], self.baseline_vector)]
+        """Position of the design to build, None if nothing should be: the knee of the choices."""
+        return self.ranking[0][0] if self.ranking else None
 
     @cached_property
     def best(self) -> dict[str, int]:
@@ -128,27 +173,33 @@ class ReportData:
         """Hypervolume (n,) of the feasible designs after each evaluation, in the box that all of them span."""
         return hypervolume_history(self.values, self.feasible)
 
+    @cached_property
+    def late_growth(self) -> tuple[float, int]:
+        """What the last quarter of the search added: share of the front's hypervolume, number of its designs."""
+        return late_growth(self.values, self.feasible, self.front)
+
     def view(self, k: int) -> tuple[float, float] | None:
-        """Range of objective `k` that shows the front, the original and most feasible designs; outliers lie outside."""
-        shown = [float(self.values[i, k]) for i in self.front]
+        """Range of objective `k` that shows the front and the original, and as much again; outliers lie outside."""
+        shown = [float(self.values[i, k]) for i in {*self.front, *self.choices}]
         if self.baseline_vector is not None:
             shown.append(float(self.baseline_vector[k]))
-        if self.feasible.any():
-            shown += np.quantile(self.values[self.feasible, k], [0.0, MOST]).tolist()
-        if not shown:
+        feasible = self.values[self.feasible, k]
+        if not len(feasible):
             return None
-        low, high = min(shown), max(shown)
+        wide = max(shown) - min(shown) or float(np.subtract(*np.quantile(feasible, [MOST, 0.0])))
+        near = feasible[(feasible >= min(shown) - wide) & (feasible <= max(shown) + wide)].tolist()
+        low, high = min(shown + near), max(shown + near)
         margin = 0.07 * (high - low) or 0.05 * abs(high) or 1.0
         return low - margin, high + margin
 
     def gain(self, position: int) -> Matrix | None:
-        """Relative change (m,) of each objective from the baseline to an entry: negative is better."""
+        """Relative change (m,) of each objective from the baseline to an entry, negative is better; NaN from zero."""
         vector = self.baseline_vector
         if vector is None:
             return None
         difference = self.values[position] - vector
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.divide(difference, np.abs(vector), out=0.0 * difference, where=difference != 0.0))
+        size = np.where(vector != 0.0, np.abs(vector), np.nan)
+        return np.asarray(np.where(difference != 0.0, difference / size, 0.0))
 
     def find(self, design: Evaluation) -> int | None:
         """Position of an evaluation's design among the entries."""
@@ -178,18 +229,26 @@ class ReportData:
 
 
 def reasons(run: ReportData) -> list[tuple[str, str, list[int]]]:
-    """Why designs were not feasible: (status, reason without its numbers, ids), the most frequent first."""
-    groups: dict[tuple[str, str], list[int]] = {}
+    """Why designs were not feasible: (status, reason with the range of its numbers, ids), the most frequent first."""
+    groups: dict[tuple[str, tuple[str, ...]], list[Entry]] = {}
     for entry in run.entries:
-        evaluation = entry.evaluation
-        if evaluation.status != "feasible":
-            groups.setdefault((evaluation.status, pattern(evaluation)), []).append(entry.id)
-    return sorted(((s, r, ids) for (s, r), ids in groups.items()), key=lambda g: (g[0] != "failed", -len(g[2])))
+        if entry.evaluation.status != "feasible":
+            key = (entry.evaluation.status, tuple(NUMBER.split(_reason(entry.evaluation))))
+            groups.setdefault(key, []).append(entry)
+    found = [(status, _with_ranges(words, same), [e.id for e in same]) for (status, words), same in groups.items()]
+    return sorted(found, key=lambda group: (group[0] != "failed", -len(group[2])))
 
 
-def pattern(evaluation: Evaluation) -> str:
-    """The reason with numbers replaced by `…`, so that designs that fail alike count together."""
-    import re
+def _reason(evaluation: Evaluation) -> str:
+    violated = ", ".join(key for key, violation in evaluation.violations.items() if violation > 0)
+    return evaluation.reason or violated or "no reason recorded"
 
-    text = evaluation.reason or ", ".join(k for k, v in evaluation.violations.items() if v > 0) or "no reason recorded"
-    return re.sub(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", "…", text)
+
+def _with_ranges(between: tuple[str, ...], alike: list[Entry]) -> str:
+    """The reason that designs share, with each of its numbers as the range that it takes: `lost at 1.6 to 3.4 s`."""
+    numbers = zip(*(NUMBER.findall(_reason(entry.evaluation)) for entry in alike), strict=True)
+    text = between[0]
+    for values, following in zip(numbers, between[1:], strict=True):
+        least, most = min(values, key=float), max(values, key=float)
+        text += (least if float(least) == float(most) else f"{least} to {most}") + following
+    return text

@@ -145,7 +145,8 @@ def flight_history(
 ) -> FlightHistory:
     """Thinned histories of a `dynamics.FlightLog`. groups: joint group -> its joints."""
     stride = max(1, -(-len(log.time) // SAMPLES))
-    kept = slice(None, None, stride)
+    known = np.isfinite(np.asarray(log.joint_positions)).all(axis=1) & np.isfinite(np.asarray(log.com)).all(axis=1)
+    kept = np.flatnonzero(known)[::stride]  # of a lost flight, what comes before
     rotation = np.asarray(log.base_rotation)[kept].reshape(-1, 3, 3)
     reference = np.asarray(log.rotation_reference)[kept].reshape(-1, 3, 3)
     turned = np.swapaxes(reference, 1, 2) @ rotation

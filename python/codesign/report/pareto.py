@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,18 +25,18 @@ def normalised(values: Matrix) -> Matrix:
     return np.asarray((values - low) / span)
 
 
-def knee(front: Matrix, baseline: Matrix | None = None) -> int:
-    """Row of the front (n, m) nearest to the best value of every objective at once.
+def knee_distances(front: Matrix, baseline: Matrix | None = None) -> Matrix:
+    """Distances (n,) of the rows of the front (n, m) from the best value of every objective at once; the least: knee.
 
     Distances are Euclidean after each objective is scaled to its range on the front. Where some rows are nowhere worse
-    than `baseline` (m,), only these are candidates: a recommended design should not trade away what the robot has.
+    than `baseline` (m,), the others get infinity: a recommended design should not trade away what the robot has.
     """
     distance = np.linalg.norm(normalised(front), axis=1)
     if baseline is not None:
         better = (front <= baseline).all(axis=1)
         if better.any():
             distance = np.where(better, distance, np.inf)
-    return int(np.argmin(distance))
+    return np.asarray(distance)
 
 
 def spread(front: Matrix, count: int) -> list[int]:
@@ -48,6 +50,20 @@ def spread(front: Matrix, count: int) -> list[int]:
             break
         chosen.append(farthest)
     return chosen
+
+
+def late_growth(values: Matrix, usable: Mask, front: Sequence[int], share: float = 0.25) -> tuple[float, int]:
+    """What the last `share` of a search added to its front: part of the hypervolume, number of the front's rows.
+
+    values (n, m): objectives in the order of evaluation; front: its usable rows that no other beats. The hypervolume is
+    taken in the box that the front spans, so that outliers do not hide its growth.
+    """
+    if not front:
+        return 0.0, 0
+    early = np.arange(len(values)) < (1.0 - share) * len(values)
+    box = Hypervolume(values[front])
+    growth = 1.0 - box.of(values[early & usable]) / box.of(values[front])
+    return growth, int((~early[front]).sum())
 
 
 def hypervolume_history(values: Matrix, usable: Mask) -> Matrix:

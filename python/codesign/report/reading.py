@@ -13,7 +13,7 @@ from codesign.problem.identity import Identity
 from codesign.problem.quantities import words
 from codesign.report.data import Entry, ReportData
 from codesign.report.details import load_details
-from codesign.report.study_words import objective_quantities
+from codesign.report.study_words import flight_words, objective_quantities, part_words
 from codesign.storage.runs import Run, load_run
 
 logger = logging.getLogger(__name__)
@@ -48,6 +48,9 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
         export_command=f"codesign export --study {run.study['source']}",
         labels={name: v.label for name, v in study.config.variables.items()} if study is not None else {},
         notes=_notes(run, study),
+        **({"baseline_missing": missing} if (missing := _baseline_missing(study)) else {}),
+        part_words=part_words(study.config) if study is not None else {},
+        flight_words=flight_words(study.config) if study is not None else "",
     )
 
 
@@ -90,6 +93,15 @@ def _stored_baseline(run: Run, study: Any) -> Evaluation | None:
         if detail.evaluation.design == wanted:
             return detail.evaluation
     return None
+
+
+def _baseline_missing(study: Any) -> str:
+    """Why a run has no evaluation of the original design although its study may name one; empty: it names none."""
+    if study is None:
+        return "The original design is not known, as the study cannot be loaded any more."
+    if study.baseline is None:
+        return ""
+    return "The study's original design was not evaluated with this run, so there is nothing to compare with."
 
 
 def _notes(run: Run, study: Any) -> tuple[str, ...]:

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from codesign.problem.quantities import Quantity, quantity, words
+from codesign.report.data import PartWords
 from codesign.report.words import listed, plural
-from codesign.study.config import JointGroupConfig, LoadConfig, PartConfig, StudyConfig
+from codesign.study.config import JointGroupConfig, PartConfig, StudyConfig
 
 TIMES = {0.5: "half", 1.0: "once", 2.0: "twice"}
 
@@ -34,42 +35,37 @@ def _times(group: JointGroupConfig) -> str:
     return TIMES.get(weight, f"{weight:g} times")
 
 
-def load_words(config: StudyConfig, name: str) -> str:
-    """A part's load case: `250 N pressing on seat, mount clamped (load model uniform, support model published)`."""
-    part = _part(config, name)
-    loads = listed([_load(load) for load in part.loads]) or "no load"
-    held = f"{listed(part.supports)} held" if part.supports else "not held"
+def part_words(config: StudyConfig) -> dict[str, PartWords]:
+    """Load case and material of every part, with a warning where its density is not that of its material."""
+    return {
+        part.name: PartWords(_load_case(config, part), _material(config, part), _warning(config, part))
+        for part in config.parts
+    }
+
+
+def _load_case(config: StudyConfig, part: PartConfig) -> str:
+    loads = listed([f"{load.pressing_n:g}\u202fN pressing on face {load.face}" for load in part.loads]) or "no load"
+    held = f"face {listed(part.supports)} held" if part.supports else "not held"
     return f"{loads}, {held} (load model “{config.fem.load}”, support model “{config.fem.support}”)"
 
 
-def _load(load: LoadConfig) -> str:
-    return f"{load.pressing_n:g}\u202fN pressing on {load.face}"
-
-
-def material_words(config: StudyConfig, name: str) -> str:
-    """What a part's stress and mass are computed with; says so if its density is not that of its material."""
-    part = _part(config, name)
+def _material(config: StudyConfig, part: PartConfig) -> str:
     material = config.materials[part.material]
-    text = (
+    return (
         f"{words(part.material)}: E {material.young_modulus_gpa:g}\u202fGPa, yield strength "
         f"{material.yield_strength_mpa:g}\u202fMPa, {material.density_kg_m3:g}\u202fkg/m³"
     )
-    return text if not other_density(config, name) else f"{text}. {density_warning(config, name)}"
 
 
-def other_density(config: StudyConfig, name: str) -> bool:
-    """Whether a part's mass is computed with a density that is not its material's."""
-    part = _part(config, name)
-    return part.density_kg_m3 not in (None, config.materials[part.material].density_kg_m3)
-
-
-def density_warning(config: StudyConfig, name: str) -> str:
-    """That a part's stress and its mass are of two materials, and what it would weigh in the one that is named."""
-    part = _part(config, name)
-    used, own = part.density_kg_m3 or 0.0, config.materials[part.material].density_kg_m3
+def _warning(config: StudyConfig, part: PartConfig) -> str:
+    used, own = part.density_kg_m3, config.materials[part.material].density_kg_m3
+    if used is None or used == own:
+        return ""
+    material, name = words(part.material), words(part.name).lower()
     return (
-        f"The mass is computed with {used:g}\u202fkg/m³ instead: made of {words(part.material).lower()} the "
-        f"{words(name).lower()} weighs {100 * own / used:.0f}\u202f% of the mass shown, and the robot flies otherwise."
+        f"The stress of the {name} is that of {material}, its mass is computed with {used:g}\u202fkg/m³ instead of "
+        f"{own:g}: made of {material} it weighs {100 * own / used:.0f}\u202f% of the mass shown, and the robot flies "
+        "otherwise."
     )
 
 
@@ -83,7 +79,3 @@ def flight_words(config: StudyConfig) -> str:
         f"in steps of {1e3 * flight.step_s:g}\u202fms. The step enters the numbers, so they compare designs with each "
         "other rather than predict the robot's."
     )
-
-
-def _part(config: StudyConfig, name: str) -> PartConfig:
-    return next(part for part in config.parts if part.name == name)

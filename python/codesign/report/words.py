@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from codesign.report.data import ReportData
@@ -11,7 +12,7 @@ EQUAL = 5e-4  # relative change that is called none
 
 def number(value: float, digits: int = 4) -> str:
     """`digits` significant digits without exponent, true minus sign."""
-    if value != value:
+    if not math.isfinite(value):
         return "–"
     text = f"{value:.{digits}g}"
     if "e" in text:
@@ -21,6 +22,8 @@ def number(value: float, digits: int = 4) -> str:
 
 def percent(change: float, digits: int = 1) -> str:
     """A relative change with its sign: `−8.4 %`."""
+    if not math.isfinite(change):
+        return "–"
     sign = "+" if change > 0 else "−" if change < 0 else "±"
     return f"{sign}{abs(100 * change):.{digits}f}\u202f%"
 
@@ -44,9 +47,6 @@ def searched(run: ReportData) -> str:
     total = len(run.entries)
     if not total:
         return f"The search varies {names} to lower {aims}. No design has been evaluated yet."
-    combinations = 1
-    for levels in run.space.levels:
-        combinations *= levels
     feasible = run.counts["feasible"]
     if not feasible:
         outcome = "None of them meets every constraint"
@@ -58,8 +58,13 @@ def searched(run: ReportData) -> str:
         )
     if len(run.front) > 1:
         outcome += f"; {len(run.front)} are best compromises, which no other design beats in everything"
-    evaluated = f"Of {combinations:,} possible designs it evaluated {total:,}."
+    evaluated = f"Of {combinations(run):,} possible designs it evaluated {total:,}."
     return f"The search varied {names} to lower {aims}. {evaluated} {outcome}."
+
+
+def combinations(run: ReportData) -> int:
+    """Number of designs on the grid."""
+    return math.prod(run.space.levels)
 
 
 def gained(run: ReportData) -> str:
@@ -68,7 +73,7 @@ def gained(run: ReportData) -> str:
         return ""
     if run.baseline_vector is None:
         if run.baseline is None:
-            return "The study names no original design to compare with."
+            return run.baseline_missing
         return (
             f"The original design gives no objectives to compare with ({run.baseline.reason or run.baseline.status})."
         )
@@ -93,53 +98,9 @@ def gained(run: ReportData) -> str:
     )
 
 
-def why(run: ReportData) -> str:
-    """Why the recommended design is recommended."""
-    if run.recommended is None:
-        return ""
-    if len(run.front) == 1:
-        return "It is the only feasible design that no other beats."
-    kept = " Only designs that are nowhere worse than the original were considered." if run.dominating else ""
-    return (
-        "It is the knee of the front: of all best compromises, the one closest to having the best value of every "
-        f"objective at once.{kept}"
-    )
-
-
-def price(run: ReportData) -> str:
-    """What the recommended design gives up against the best found of each objective."""
-    if run.recommended is None or len(run.front) < 2:
-        return ""
-    lost = []
-    for k, objective in enumerate(run.objectives):
-        best, here = run.values[run.best[objective.key], k], run.values[run.recommended, k]
-        if best != 0 and (here - best) / abs(best) > EQUAL:
-            lost.append(f"{objective.label.lower()} {100 * (here - best) / abs(best):.1f}\u202f%")
-    return (
-        f"Its price: {listed(lost)} above the lowest found."
-        if lost
-        else "It is also the best in every single objective."
-    )
-
-
-def strength(run: ReportData) -> str:
-    """How strong the recommended design's weakest part is."""
-    if run.recommended is None:
-        return ""
-    parts = run.entries[run.recommended].evaluation.parts
-    factors = {name: part["safety_factor"] for name, part in parts.items() if part.get("safety_factor")}
-    if not factors:
-        return ""
-    weakest = min(factors, key=lambda name: factors[name])
-    asked = f" (at least {run.limits['safety_factor'][1]:g} is asked for)" if "safety_factor" in run.limits else ""
-    return (
-        f"Its weakest part, the {weakest.replace('_', ' ')}, would bear {factors[weakest]:.1f} times its load{asked}."
-    )
-
-
 def caveats(run: ReportData) -> list[str]:
     """What a reader must know before trusting the page."""
-    notes = list(run.notes)
+    notes = list(run.notes) + [known.warning for known in run.part_words.values() if known.warning]
     if run.waiting or (run.planned and len(run.entries) < run.planned):
         missing = f" of {run.planned:,} planned" if run.planned else ""
         notes.append(

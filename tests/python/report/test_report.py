@@ -14,9 +14,11 @@ from codesign.problem.evaluation import Evaluation
 from codesign.report import write_report
 from codesign.report.data import reasons
 from codesign.report.details import detail_key, load_detail, load_details, save_detail
-from codesign.report.pareto import hypervolume_history, knee, spread
+from codesign.report.page.summary import summary
+from codesign.report.pareto import hypervolume_history, knee_distances, late_growth, spread
 from codesign.report.reading import read_report_data
-from codesign.report.words import caveats, gained, searched, why
+from codesign.report.recommendation import why
+from codesign.report.words import caveats, gained, searched
 from synthetic_details import detail
 
 STUDY = synthetic_run.Study()
@@ -42,13 +44,15 @@ def embedded(text: str) -> dict[str, object]:
 
 def test_knee_is_the_point_nearest_to_all_best_values():
     front = np.array([[0.0, 1.0], [0.2, 0.3], [1.0, 0.0]])
-    assert knee(front) == 1
+    assert np.argmin(knee_distances(front)) == 1
 
 
 def test_knee_prefers_designs_that_are_nowhere_worse_than_the_original():
     front = np.array([[0.0, 1.0], [0.2, 0.3], [1.0, 0.0]])
-    assert knee(front, baseline=np.array([1.5, 0.1])) == 2
-    assert knee(front, baseline=np.array([-1.0, -1.0])) == 1  # nothing is better: the whole front counts
+    assert np.argmin(knee_distances(front, baseline=np.array([1.5, 0.1]))) == 2
+    assert (
+        np.argmin(knee_distances(front, baseline=np.array([-1.0, -1.0]))) == 1
+    )  # nothing is better: the whole front counts
 
 
 def test_spread_takes_the_extremes_first_and_no_point_twice():
@@ -120,7 +124,7 @@ def test_failed_designs_are_shown_with_their_reasons_and_never_ranked(tmp_path, 
     assert failed
     assert not set(failed) & {run.entries[i].id for i in run.front}
     assert sorted(i for status, _, ids in reasons(run) if status == "failed" for i in ids) == failed
-    assert "volume of the mesh is … % off" in page_text(tmp_path / "run")
+    assert "volume of the mesh is 1.8 % off" in page_text(tmp_path / "run")
 
 
 def test_text_from_outside_cannot_become_markup(tmp_path, evaluations):
@@ -185,6 +189,33 @@ def test_damaged_details_count_as_absent(tmp_path):
 
 
 def test_report_without_an_original_design(tmp_path, evaluations):
-    run = replace(report_data(tmp_path / "run", evaluations), baseline=None)
+    bare = type("Bare", (synthetic_run.Study,), {"baseline": None})()
+    synthetic_run.write_run(tmp_path / "run", evaluations)
+    run = read_report_data(tmp_path / "run", bare)
     assert run.recommended is not None
     assert "names no original" in gained(run)
+    with_one = read_report_data(tmp_path / "run", type("Changed", (synthetic_run.Study,), {"hash": "other"})())
+    assert "names no original" not in gained(with_one)
+
+
+def test_reasons_show_the_range_of_their_numbers(tmp_path, evaluations):
+    run = report_data(tmp_path / "run", evaluations)
+    (lost,) = (reason for _, reason, _ in reasons(run) if "flight lost" in reason)
+    assert re.fullmatch(r"flight lost at 1\.\d+ to 3\.\d+ s: attitude error above 90°", lost)
+
+
+def test_the_last_quarter_of_a_search_is_measured_on_the_front():
+    values = np.array([[1.0, 3.0], [3.0, 1.0], [1e6, 1e6], [2.0, 1.5]])
+    growth, late = late_growth(values, np.ones(4, dtype=bool), [0, 1, 3])
+    assert late == 1
+    assert 0.5 < growth < 0.8  # the outlier does not hide it
+    assert late_growth(values[:3], np.ones(3, dtype=bool), [0, 1]) == (0.0, 0)
+
+
+def test_a_change_from_zero_is_no_number(tmp_path, evaluations):
+    run = report_data(tmp_path / "run", evaluations)
+    nothing = replace(run.baseline, objectives={**run.baseline.objectives, "thrust": 0.0})
+    run = replace(run, baseline=nothing)
+    assert np.isnan(run.gain(run.recommended)[2])
+    text = summary(run)
+    assert not re.search(r"\b(nan|inf)\b", text)

@@ -34,9 +34,13 @@ function roles(design) {
   return found;
 }
 
+/** Why a design lacks a number, for the dash that stands in its place. */
+const lacking = design => `<span title="${escaped(design.reason || 'not computed for this design')}">–</span>`;
+const below = (c, value) => known(c.floor) && known(value) && value < c.floor;
+
 /** Relative change of objective `k` from the original; null where either is unknown. */
 function change(design, k) {
-  if (!original || design === original || !known(design.f[k]) || !known(original.f[k])) return null;
+  if (!original || design === original || !known(design.f[k]) || !original.f[k]) return null;
   return (design.f[k] - original.f[k]) / Math.abs(original.f[k]);
 }
 

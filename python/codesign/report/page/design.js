@@ -16,14 +16,14 @@ function card(i) {
   const objectives = report.objectives.map((o, k) =>
     `<div class="row"><span>${escaped(o.label)}</span><b>${withUnit(number(d.f[k]), o.unit)}<span class="delta ${sense(change(d, k))}">${percent(change(d, k))}</span></b></div>`);
   const constraint = (c, k) => {
-    const verdict = !known(d.c[k]) || !c.rule ? '' : d.g[k] > 0 ? '<span class="bad"> violated</span>' : '<span class="good"> ✓</span>';
+    const verdict = below(c, d.c[k]) ? '<span class="bad"> overlap</span>' : !known(d.c[k]) || !c.rule ? '' : d.g[k] > 0 ? '<span class="bad"> violated</span>' : '<span class="good"> ✓</span>';
     return `<div class="row" title="${escaped(c.meaning)}"><span>${escaped(c.label)} <small>${escaped(c.rule)}</small></span><b>${withUnit(number(d.c[k], 3), c.unit)}${verdict}</b></div>`;
   };
   const rows = wanted => report.constraints.map((c, k) => Boolean(c.rule) === wanted && known(d.c[k]) ? constraint(c, k) : '').join('');
   const [constraints, watched] = [rows(true), rows(false)];
   box.innerHTML = `<header><h2>${name(d)}</h2><span class="step"><button type="button" class="quiet" data-step="-1" aria-label="Previous best compromise" title="Previous best compromise">←</button>` +
     `<button type="button" class="quiet" data-step="1" aria-label="Next best compromise" title="Next best compromise">→</button></span></header>` +
-    `<p class="tags">${tags.join('')}</p>${d.reason ? `<p class="reason">${escaped(d.reason)}</p>` : ''}` +
+    `<p class="tags">${tags.join('')}</p>${against(d)}` +
     `<div class="group"><h3>Parameters${original && d !== original ? ' <small>– mark: original</small>' : ''}</h3>${variables.join('')}</div>` +
     (d.f.some(known) ? `<div class="group"><h3>Objectives${original && d !== original ? ', against the original' : ''}</h3>${objectives.join('')}</div>` : '') +
     (constraints ? `<div class="group"><h3>Constraints</h3>${constraints}</div>` : '') +
@@ -33,7 +33,13 @@ function card(i) {
 }
 const command = d => report.command + ' ' + report.variables.map((v, k) => `--set ${v.key}=${d.x[k]}`).join(' ') + ` --out design-${d.id ?? 'original'}`;
 
-const PART_FACTS = [['Mass', 'kg', 4, 1], ['Safety factor', '', 3, 1], ['Peak stress', 'MPa', 3, 1e-6], ['Stress error', 'MPa', 2, 1e-6], ['Displacement', 'µm', 3, 1e6]];
+/** What speaks against building a design. */
+function against(d) {
+  if (!d.against.length) return '';
+  return `<div class="reason"><b>${d.barred ? 'Not to be built' : 'Not to be built yet'}</b><ul>${d.against.map(text => `<li>${escaped(text)}</li>`).join('')}</ul></div>`;
+}
+
+const PART_FACTS = [['Mass', 'kg', 4, 1], ['Safety factor', '', 3, 1], ['Peak stress', 'MPa', 3, 1e-6], ['Stress error', 'MPa', 2, 1e-6], ['Displacement', 'mm', 3, 1e3]];
 
 function drawParts(i) {
   const box = element('parts'), d = designs[i];
@@ -43,14 +49,22 @@ function drawParts(i) {
   const cards = report.parts.map((part, k) => {
     const values = d.p[k];
     if (!values) return '';
-    const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd></div>`);
+    const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd>${before(d, k, n, factor, digits)}</div>`);
+    const about = [part.material, part.load && `Load: ${part.load}`].filter(Boolean).map(text => `<p class="count">${escaped(text)}.</p>`).join('') + (part.warning ? `<p class="count bad">${escaped(part.warning)}</p>` : '');
     const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, coloured by stress; drag to turn"></div>` : '';
-    return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl></article>`;
+    return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl>${about}</article>`;
   });
   document.querySelectorAll('.solid').forEach(node => window.Plotly?.purge(node));
   box.innerHTML = cards.join('') || '<p class="absent">No part was built for this design.</p>';
   element('parts-absent').innerHTML = detail || !cards.join('') ? '' : absent('The 3-D view with stress and the flight histories are');
   report.parts.forEach((part, k) => whenVisible(element(`solid-${k}`), node => drawSolid(node, detail.parts[part.key])));
+}
+
+/** The same number of the original's part, and the change from it. */
+function before(d, k, n, factor, digits) {
+  const was = original && d !== original ? original.p[k]?.[n] : null, now = d.p[k][n];
+  if (!known(was)) return '';
+  return `<dd class="was">original ${number(was * factor, digits)} ${was && n < 2 ? percent((now - was) / Math.abs(was), 0) : ''}</dd>`;
 }
 
 function absent(what) {

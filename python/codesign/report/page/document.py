@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,11 @@ from codesign.problem.evaluation import Evaluation
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import ReportData
 from codesign.report.details import detail_key
+from codesign.report.objections import Objection, objections
 from codesign.units import DEGREE
 
 STATUS = {"feasible": 0, "infeasible": 1, "failed": 2}
+FLOORS = {"body_clearance": 0.0, "plume_clearance": 0.0}  # below it a number is bad, whether limited or not
 PART_KEYS = ("mass", "safety_factor", "peak_stress", "stress_error", "max_displacement")
 FLIGHT_FACTS = (
     Quantity("max_com_error", "Largest position error", "cm", factor=100.0),
@@ -32,7 +34,12 @@ def page_document(
     parts = list(dict.fromkeys(name for e in run.entries for name in e.evaluation.parts))
     front = set(run.front)
     rows = [
-        {"id": e.id, "front": i in front, **_row(run, e.evaluation, constraints, parts, files or {})}
+        {
+            "id": e.id,
+            "front": i in front,
+            **_against(run.objections(i)),
+            **_row(run, e.evaluation, constraints, parts, files or {}),
+        }
         for i, e in enumerate(run.entries)
     ]
     baseline = None
@@ -40,7 +47,9 @@ def page_document(
         baseline = run.find(run.baseline)
         if baseline is None:
             baseline = len(rows)
-            rows.append({"id": None, "front": False, **_row(run, run.baseline, constraints, parts, files or {})})
+            against = _against(objections(run.baseline, run.limits))
+            numbers = _row(run, run.baseline, constraints, parts, files or {})
+            rows.append({"id": None, "front": False, **against, **numbers})
     return {
         "variables": [
             {"key": v.name, "label": run.label(v), "unit": _unit(v.unit), "min": v.minimum, "max": v.maximum}
@@ -51,7 +60,7 @@ def page_document(
             for k, o in enumerate(run.objectives)
         ],
         "constraints": [_constraint(run, key) for key in constraints],
-        "parts": [{"key": name, "label": words(name)} for name in parts],
+        "parts": [_part_words(run, name) for name in parts],
         "flight_facts": [{"label": q.label, "unit": q.unit} for q in FLIGHT_FACTS],
         "designs": rows,
         "baseline": baseline,
@@ -87,6 +96,16 @@ def _part(numbers: dict[str, Any]) -> list[float | None]:
     return [_rounded(numbers.get(key)) for key in PART_KEYS]
 
 
+def _against(found: Sequence[Objection]) -> dict[str, Any]:
+    return {"against": [objection.text for objection in found], "barred": any(o.final for o in found)}
+
+
+def _part_words(run: ReportData, name: str) -> dict[str, str]:
+    known = run.part_words.get(name)
+    described = {"load": known.load, "material": known.material, "warning": known.warning} if known else {}
+    return {"key": name, "label": words(name), **described}
+
+
 def _shown(quantity: Quantity, numbers: Mapping[str, Any]) -> float | None:
     value = numbers.get(quantity.key)
     return None if value is None else _rounded(quantity.factor * value)
@@ -112,7 +131,14 @@ def _constraint(run: ReportData, key: str) -> dict[str, Any]:
     if key in run.limits:
         sign, limit = run.limits[key]
         rule = f"{ {'>=': '≥', '<=': '≤'}[sign] } {shown.factor * limit:g}"
-    return {"key": key, "label": shown.label, "unit": shown.unit, "meaning": shown.meaning, "rule": rule}
+    return {
+        "key": key,
+        "label": shown.label,
+        "unit": shown.unit,
+        "meaning": shown.meaning,
+        "rule": rule,
+        "floor": FLOORS.get(key),
+    }
 
 
 def _unit(unit: str) -> str:

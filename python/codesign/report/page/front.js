@@ -27,7 +27,7 @@ function frontTraces() {
   const traces = [
     markers(points(d => d.status === INFEASIBLE), {symbol: 'x-thin', size: 6, line: {width: 1.2, color: colour('lost')}}, 'infeasible'),
     markers(points(d => d.status === FEASIBLE && !d.front), {size: 6, color: colour('dot'), opacity: 0.75}, 'feasible'),
-    markers(best, {size: 10, line: {width: 1, color: colour('bg')}, ...scale}, 'best compromise'),
+    markers(best, {size: 10, symbol: best.map(i => designs[i].barred ? 'circle-open' : 'circle'), line: {width: 1, color: colour('bg')}, ...scale}, 'best compromise'),
   ];
   const at = points(d => d === original);
   traces.push(markers(at, {symbol: 'diamond', size: 13, color: colour('original'), line: {width: 1.5, color: colour('bg')}}, 'original'));

@@ -45,7 +45,7 @@ def render(
         font=base64.b64encode(folder.joinpath("inter.woff2").read_bytes()).decode(),
         style=read["style.css"],
         navigation="".join(f'<a href="#{block.key}">{block.short}</a>' for block in blocks),
-        summary=summary(run, picture),
+        summary=summary(run, picture, validation),
         sections="\n".join(block.html for block in blocks),
         footer=f"<p>Made by codesign {escape(codesign.__version__)}. This file is complete: it needs no network.</p>",
         data=_json(page_document(run, details, files) | {"validation": strips(run, validation)}),

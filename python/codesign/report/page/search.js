@@ -1,4 +1,4 @@
-/** Share of the final hypervolume by evaluation. */
+/** Hypervolume by evaluation, relative to this run's end. */
 function drawProgress() {
   const plot = element('progress');
   if (!plot) return;
@@ -6,7 +6,7 @@ function drawProgress() {
   plotly().react(plot, [{
     type: 'scatter', mode: 'lines', x: steps.count, y: steps.volume, line: {color: colour('accent'), width: 2, shape: 'hv'},
     hovertemplate: 'after %{x} designs: %{y:.1%}<extra></extra>',
-  }], layout({xaxis: axis('Designs evaluated', {rangemode: 'tozero'}), yaxis: axis('Front found', {tickformat: '.0%', range: [0, 1.04]}), hovermode: 'x'}), settings);
+  }], layout({xaxis: axis('Designs evaluated', {rangemode: 'tozero'}), yaxis: axis('Volume, of this run’s end', {tickformat: '.0%', range: [0, 1.04]}), hovermode: 'x'}), settings);
 }
 
 /** Change of each objective from the original: disturbed flights as dots, calm ones as diamonds, a column a design. */

@@ -16,6 +16,7 @@ CARD = '<aside class="card" id="card" aria-label="Selected design"></aside>'
 KEY = {
     "recommended": '<path d="M7 0l2 4.8 5 .4-3.8 3.3 1.2 5L7 10.8l-4.4 2.7 1.2-5L0 5.2l5-.4z" fill="var(--ink)"/>',
     "best compromise": '<circle cx="7" cy="7" r="5" fill="#21918c"/>',
+    "best compromise, not to be built": '<circle cx="7" cy="7" r="4.5" fill="none" stroke="#21918c" stroke-width="2"/>',
     "feasible": '<circle cx="7" cy="7" r="3" fill="var(--dot)"/>',
     "infeasible": '<path d="M4 4l6 6M10 4l-6 6" stroke="var(--faint)" stroke-width="1.3"/>',
     "original": '<path d="M7 0l7 7-7 7-7-7z" fill="var(--original)"/>',
@@ -43,7 +44,7 @@ def sections(run: ReportData, validation: Validation | None = None) -> list[Bloc
     if validation is not None:
         found.append(_validation(run, validation))
     if len(run.front) > 1:
-        found.append(_search())
+        found.append(_search(run))
     if reasons(run):
         found.append(_rejected(run))
     return [*found, _provenance(run)]
@@ -121,12 +122,14 @@ def _validation(run: ReportData, validation: Validation) -> Block:
     return _block("validation", "Validation", "Validation", text, body)
 
 
-def _search() -> Block:
+def _search(run: ReportData) -> Block:
+    grown, late = run.late_growth
     text = (
-        "How much of the final front was known after each evaluation, measured by the volume of objective space that "
-        "it dominates. A curve that is flat at its end says that more search would gain little."
+        "Volume of objective space that the designs found so far dominate, as a share of what this run had found at "
+        "its end: 100 % is its own end, not the best there is. In the box that the front spans, the last quarter of "
+        f"the designs added {100 * grown:.1f} % of the volume and {late} of the {len(run.front)} best compromises."
     )
-    body = '<div id="progress" role="img" aria-label="Share of the final front known, by designs evaluated"></div>'
+    body = '<div id="progress" role="img" aria-label="Volume found by designs evaluated, of this run\'s end"></div>'
     return _block("search", "Search", "How the search went", text, body)
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import base64
 from html import escape
 
-from codesign.report import words
+from codesign.report import recommendation, words
 from codesign.report.data import ReportData
+from codesign.report.evidence import Evidence, evidence, validated
+from codesign.report.validation import Validation
 
 
-def summary(run: ReportData, picture: bytes | None = None) -> str:
+def summary(run: ReportData, picture: bytes | None = None, validation: Validation | None = None) -> str:
     """HTML of the first screen; picture: PNG of the robot with the parts that were optimised."""
     leads = [run.description, words.searched(run), words.gained(run)]
     said = f"<h1>{escape(run.title)}</h1>" + "".join(f'<p class="lead">{escape(text)}</p>' for text in leads if text)
@@ -23,35 +25,50 @@ def summary(run: ReportData, picture: bytes | None = None) -> str:
         )
     return (
         f'<section class="summary" aria-label="Summary"><div class="opening"><div>{said}{notes}</div>{shown}</div>'
-        f"{_tiles(run)}{_build(run)}</section>"
+        f"{_tiles(run, validation)}{_build(run)}</section>"
     )
 
 
-def _tiles(run: ReportData) -> str:
-    """One figure an objective: its change from the original, and both values."""
+def _tiles(run: ReportData, validation: Validation | None) -> str:
+    """One figure an objective: its change from the original, both values, and how far it can be trusted."""
     if run.recommended is None:
         return ""
-    gain, baseline = run.gain(run.recommended), run.baseline_vector
-    tiles = []
-    for k, objective in enumerate(run.objectives):
-        here, unit = run.values[run.recommended, k], escape(objective.unit)
-        if gain is None or baseline is None:
-            big, change = words.number(here), unit
-        else:
-            sense = "" if abs(gain[k]) < words.EQUAL else "good" if gain[k] < 0 else "bad"
-            big = f'<span class="{sense}">{words.percent(gain[k])}</span>'
-            change = f"{words.number(baseline[k])} → {words.number(here)} {unit}"
-        tiles.append(
-            f'<div class="tile" title="{escape(objective.meaning)}"><dt>{escape(objective.label)}</dt>'
-            f'<dd class="big">{big}</dd><dd><p>{change}</p></dd></div>'
-        )
-    return f'<dl class="tiles">{"".join(tiles)}</dl>'
+    known = [evidence(run, validation, k) for k in range(len(run.objectives))]
+    tiles = "".join(_tile(run, k, known[k]) for k in range(len(run.objectives)))
+    return f'<dl class="tiles">{tiles}</dl><p class="trust">{escape(_trust(run, validation))}</p>'
+
+
+def _tile(run: ReportData, k: int, known: Evidence) -> str:
+    assert run.recommended is not None
+    objective, here = run.objectives[k], run.values[run.recommended, k]
+    gain, baseline, unit = run.gain(run.recommended), run.baseline_vector, escape(objective.unit)
+    if gain is None or baseline is None:
+        big, change, trust = words.number(here), unit, ""
+    else:
+        big = words.percent(gain[k])
+        change = f"{words.number(baseline[k])} → {words.number(here)} {unit}"
+        trust = f"<p>{escape(known.text)}</p>"
+    size = "big" if known.sense else "big open"
+    return (
+        f'<div class="tile" title="{escape(objective.meaning)}"><dt>{escape(objective.label)}</dt>'
+        f'<dd class="{size} {known.sense}">{big}</dd><dd><p>{change}</p>{trust}</dd></div>'
+    )
+
+
+def _trust(run: ReportData, validation: Validation | None) -> str:
+    """What the changes are of, and how to learn whether they last."""
+    if run.baseline_vector is None or validated(run, validation):
+        return run.flight_words
+    name = run.directory.name
+    return f"{run.flight_words} Whether these changes last on other flights is not known: codesign validate {name}."
 
 
 def _build(run: ReportData) -> str:
-    """The recommended design, why it is recommended, and the command that exports it."""
+    """The recommended design, why it is recommended, what speaks against it, and the command that exports it."""
+    box = '<div class="build" role="group" aria-label="Recommended design">'
     if run.recommended is None:
-        return ""
+        text = escape(recommendation.nothing_to_build(run))
+        return f'{box}<div><h2 class="bad">No design to build</h2><p>{text}</p></div></div>' if run.front else ""
     entry = run.entries[run.recommended]
     design = entry.evaluation.design
     values = "".join(
@@ -60,9 +77,20 @@ def _build(run: ReportData) -> str:
     command = " ".join(
         [run.export_command, *(f"--set {v.name}={design[v.name]:g}" for v in run.variables), f"--out design-{entry.id}"]
     )
+    against = recommendation.reservations(run)
+    title = f"Candidate: design {entry.id}" if against else f"Build design {entry.id}"
+    open_points = "".join(f"<li>{escape(text)}</li>" for text in against)
+    points = f'<p class="bad">Not to be built yet:</p><ul class="bad">{open_points}</ul>' if against else ""
+    said = [
+        recommendation.remedy(run),
+        recommendation.why(run),
+        recommendation.price(run),
+        recommendation.strength(run),
+        recommendation.unchecked(run),
+    ]
+    paragraphs = "".join(f"<p>{escape(text.strip())}</p>" for text in said if text.strip())
     return (
-        f'<div class="build" role="group" aria-label="Recommended design"><div><h2>Build design {entry.id}</h2>'
-        f"<p>{escape(words.why(run))}</p><p>{escape(words.price(run))} {escape(words.strength(run))}</p></div>"
+        f"{box}<div><h2>{title}</h2>{points}{paragraphs}</div>"
         f'<dl class="values">{values}</dl><div class="command"><code>{escape(command)}</code>'
         f'<button type="button" class="copy" data-copy="{escape(command)}">Copy</button></div></div>'
     )

@@ -4,15 +4,17 @@ const FILTERS = {
   front: d => d.front, feasible: d => d.status === FEASIBLE, all: () => true, rejected: d => d.status !== FEASIBLE,
 };
 
+const remark = d => [...roles(d), ...(d.status === FEASIBLE ? d.against : [d.reason || STATUS[d.status]])].join(', ') || STATUS[d.status];
+
 function columns() {
   const found = [{head: 'Design', value: d => d.id ?? -1, text: d => d.id === null ? 'original' : d.id}];
   report.variables.forEach((v, k) => found.push({head: v.label, unit: v.unit, value: d => d.x[k], text: d => plain(d.x[k])}));
   report.objectives.forEach((o, k) => found.push({
     head: o.label, unit: o.unit, value: d => d.f[k],
-    text: d => known(d.f[k]) ? number(d.f[k]) + (original ? `<small class="${sense(change(d, k))}">${percent(change(d, k))}</small>` : '') : '–',
+    text: d => known(d.f[k]) ? number(d.f[k]) + (original ? `<small>${percent(change(d, k))}</small>` : '') : lacking(d),
   }));
-  report.constraints.forEach((c, k) => found.push({head: c.label, unit: [c.unit, c.rule].filter(Boolean).join(' '), value: d => d.c[k], text: d => number(d.c[k], 3)}));
-  found.push({head: 'Remark', text_align: true, value: d => roles(d).join() || d.reason || '', text: d => escaped(roles(d).join(', ') || d.reason || STATUS[d.status])});
+  report.constraints.forEach((c, k) => found.push({head: c.label, unit: [c.unit, c.rule].filter(Boolean).join(' '), value: d => d.c[k], text: d => known(d.c[k]) ? `<span class="${below(c, d.c[k]) ? 'bad' : ''}">${number(d.c[k], 3)}</span>` : lacking(d)}));
+  found.push({head: 'Remark', text_align: true, value: remark, text: d => escaped(remark(d))});
   return found;
 }
 const shownColumns = columns();

@@ -1,0 +1,118 @@
+"""The recommended design in words: how it was chosen, what it costs, what speaks against building it."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from codesign.report.data import ReportData
+from codesign.report.objections import UNSETTLED
+from codesign.report.words import EQUAL, combinations, listed, plural
+
+SETTLED = 0.01  # of the front's hypervolume: what the last quarter of a settled search adds at most
+
+
+def why(run: ReportData) -> str:
+    """Why the recommended design is recommended, and how it was chosen."""
+    if run.recommended is None:
+        return ""
+    if len(run.choices) == 1:
+        alone = "feasible design" if run.counts["feasible"] == 1 else "design that may be built"
+        return f"It is the only {alone} that no other beats. {left_out(run)}".rstrip()
+    ranks = [f"design {run.entries[i].id} ({distance:.2f})" for i, distance in run.ranking[1:3]]
+    following = f"; next {'is' if len(ranks) == 1 else 'are'} {listed(ranks)}" if ranks else ""
+    kept = " Only designs that are nowhere worse than the original were considered." if _guarded(run) else ""
+    return (
+        f"It is the knee of the {len(run.choices)} best compromises: with every objective scaled to run from 0 (lowest "
+        f"among them) to 1 (highest), it is nearest to 0 in all of them, at a distance of {run.ranking[0][1]:.2f}"
+        f"{following}. Other weights of the objectives would choose otherwise.{kept} {left_out(run)}"
+    ).rstrip()
+
+
+def _guarded(run: ReportData) -> bool:
+    """Whether the choice was limited to designs that are nowhere worse than the original."""
+    vector = run.baseline_vector
+    return vector is not None and bool((run.values[run.choices] <= vector).all(axis=1).any())
+
+
+def left_out(run: ReportData) -> str:
+    """How many of the best compromises are no choice, and why."""
+    others = [i for i in run.front if i not in run.choices]
+    if not others:
+        return ""
+    kinds = Counter(kind for i in others for kind in {objection.kind for objection in run.objections(i)})
+    because = listed([f"{number} {kind}" for kind, number in kinds.most_common()])
+    found, were = plural(len(run.front), "best compromise"), "was" if len(others) == 1 else "were"
+    return f"{len(others)} of the {found} found {were} left out: {because}."
+
+
+def price(run: ReportData) -> str:
+    """What the recommended design gives up against the lowest of each objective that can be had."""
+    if run.recommended is None or len(run.choices) < 2:
+        return ""
+    lost = []
+    for k, objective in enumerate(run.objectives):
+        best, here = run.values[run.choices, k].min(), run.values[run.recommended, k]
+        if best != 0 and (here - best) / abs(best) > EQUAL:
+            lost.append(f"{objective.label.lower()} {100 * (here - best) / abs(best):.1f}\u202f%")
+    return (
+        f"Its price: {listed(lost)} above the lowest among them."
+        if lost
+        else "It is also the best in every single objective."
+    )
+
+
+def strength(run: ReportData) -> str:
+    """How strong the recommended design's weakest part is: under which load, how held, of what material."""
+    if run.recommended is None:
+        return ""
+    parts = run.entries[run.recommended].evaluation.parts
+    factors = {name: part["safety_factor"] for name, part in parts.items() if part.get("safety_factor")}
+    if not factors:
+        return ""
+    weakest = min(factors, key=lambda name: factors[name])
+    asked = f" (at least {run.limits['safety_factor'][1]:g} is asked for)" if "safety_factor" in run.limits else ""
+    known = run.part_words.get(weakest)
+    case = f": {known.load}; {known.material}. Other loads and supports were not analyzed" if known else ""
+    name = weakest.replace("_", " ")
+    return f"Its weakest part, the {name}, yields at {factors[weakest]:.1f} times its load{asked}{case}."
+
+
+def reservations(run: ReportData) -> list[str]:
+    """What must be settled before the recommended design is built."""
+    if run.recommended is None:
+        return []
+    found = [f"{o.text[:1].upper()}{o.text[1:]}." for o in run.objections(run.recommended)]
+    grown, late = run.late_growth
+    if grown >= SETTLED and len(run.entries) < combinations(run):
+        designs, front = plural(len(run.entries), "design"), plural(len(run.front), "best compromise")
+        found.append(
+            f"The search has not settled: the last quarter of its {designs} found {late} of the {front} and "
+            f"{100 * grown:.0f}\u202f% of the front's volume. Better designs are likely: search on."
+        )
+    return found
+
+
+def remedy(run: ReportData) -> str:
+    """What to do about an objection to the recommended design that a closer analysis may lift."""
+    if run.recommended is None or not any(o.kind in UNSETTLED for o in run.objections(run.recommended)):
+        return ""
+    return "codesign evaluate with --confirm analyzes its parts in full on finer meshes."
+
+
+def nothing_to_build(run: ReportData) -> str:
+    """Why no design is recommended although there are feasible ones."""
+    return (
+        f"{left_out(run)} Demand clearances (body_clearance_min_mm, plume_clearance_min_mm under [constraints]) and "
+        "search again."
+    )
+
+
+def unchecked(run: ReportData) -> str:
+    """What the study does not measure although it may forbid building a design."""
+    keys = {key for entry in run.entries for key in entry.evaluation.constraints}
+    if "body_clearance" in keys:
+        return (
+            "Clearances are those of simple shapes around the bodies, to about a centimeter and on the safe side, over "
+            "the postures flown."
+        )
+    return "Whether bodies or plumes collide was not checked: the study has no section [interference]."

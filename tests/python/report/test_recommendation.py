@@ -1,0 +1,160 @@
+"""Which design the report recommends, and what it says against building it."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import synthetic_run
+from codesign.problem.evaluation import Evaluation
+from codesign.report.data import ReportData
+from codesign.report.evidence import evidence
+from codesign.report.objections import objections
+from codesign.report.page.summary import summary
+from codesign.report.reading import read_report_data
+from codesign.report.recommendation import left_out, price, reservations, strength, why
+from codesign.report.validation import Disturbance, Flight, Validation
+
+STUDY = synthetic_run.Study()
+LIMITS = {"safety_factor": (">=", 10.0)}
+
+
+@pytest.fixture(scope="module")
+def evaluations() -> list[Evaluation]:
+    return synthetic_run.evaluations(150)
+
+
+def report_data(folder: Path, evaluations: list[Evaluation]) -> ReportData:
+    synthetic_run.write_run(folder, evaluations)
+    return read_report_data(folder, STUDY, synthetic_run.evaluate(synthetic_run.BASELINE))
+
+
+def with_gaps(evaluation: Evaluation, body: float, plume: float = 0.03) -> Evaluation:
+    gaps = {"body_clearance": body, "plume_clearance": plume}
+    return replace(evaluation, constraints=evaluation.constraints | gaps)
+
+
+def part(evaluation: Evaluation, **numbers: object) -> Evaluation:
+    return replace(evaluation, parts={name: {**p, **numbers} for name, p in evaluation.parts.items()})  # type: ignore[dict-item]
+
+
+def test_a_sound_design_has_no_objection():
+    assert objections(with_gaps(synthetic_run.evaluate(synthetic_run.BASELINE), 0.003), LIMITS) == ()
+
+
+@pytest.mark.parametrize(
+    ("body", "plume", "said"), [(-0.006, 0.03, "overlap by 6.0\u202fmm"), (0.003, -0.0349, "34.9\u202fmm deep")]
+)
+def test_a_design_that_collides_is_barred_even_if_nothing_limits_it(body, plume, said):
+    (found,) = objections(with_gaps(synthetic_run.evaluate(synthetic_run.BASELINE), body, plume), {})
+    assert found.final
+    assert said in found.text
+
+
+def test_an_objection_names_the_pair_that_is_nearest():
+    bad = with_gaps(synthetic_run.evaluate(synthetic_run.BASELINE), -0.006)
+    pairs = [{"links": ["left_rod", "chest"], "clearance": 0.1}, {"links": ["rod", "hip"], "clearance": -0.006}]
+    (found,) = objections(replace(bad, flight={**bad.flight, "interference": {"bodies": pairs, "plumes": []}}), {})
+    assert "(rod and hip)" in found.text
+
+
+@pytest.mark.parametrize(
+    ("numbers", "said"),
+    [
+        ({"tolerance_reached": False, "peak_stress": 1e6, "stress_error": 9.4e4}, "estimated at 9.4"),
+        ({"safety_factor": 10.1, "peak_stress": 1e6, "stress_error": 4e4}, "by less than its error"),
+    ],
+)
+def test_stress_that_is_not_settled_is_an_objection_that_may_be_lifted(numbers, said):
+    found = objections(part(synthetic_run.evaluate(synthetic_run.BASELINE), **numbers), LIMITS)
+    assert found
+    assert not any(objection.final for objection in found)
+    assert said in found[0].text
+
+
+def test_infeasible_and_failed_designs_are_barred(evaluations):
+    for evaluation in evaluations:
+        assert any(o.final for o in objections(evaluation, LIMITS)) == (evaluation.status != "feasible")
+
+
+def test_the_best_design_that_does_not_collide_is_recommended(tmp_path, evaluations):
+    plain = report_data(tmp_path / "plain", evaluations)
+    barred = set(plain.front) - {plain.front[-1]}
+    run = report_data(
+        tmp_path / "run", [with_gaps(e, -0.006 if i in barred else 0.003) for i, e in enumerate(evaluations)]
+    )
+    assert run.front == plain.front
+    assert run.recommended not in barred
+    assert not run.objections(run.recommended)
+    for i in run.choices:  # nothing that may be built beats a choice
+        others = run.values[[j for j in range(len(evaluations)) if run.feasible[j] and not run.objections(j)]]
+        assert not ((others <= run.values[i]).all(axis=1) & (others < run.values[i]).any(axis=1)).any()
+    assert f"{len(barred)} of the {len(run.front)} best compromises found" in left_out(run)
+    assert f"{len(barred)} overlap bodies of the robot" in why(run)
+    text = summary(run)
+    assert "design to build" not in text
+
+
+def test_nothing_is_recommended_where_every_design_collides(tmp_path, evaluations):
+    run = report_data(tmp_path / "run", [with_gaps(e, -0.006, -0.01) for e in evaluations])
+    assert run.front
+    assert run.recommended is None
+    text = summary(run)
+    assert '<h2 class="bad">No design to build</h2>' in text
+    assert "Build design" not in text
+    assert "overlap bodies of the robot" in text
+
+
+def test_a_design_that_is_not_settled_is_a_candidate(tmp_path, evaluations):
+    doubtful = [part(e, tolerance_reached=False) if e.parts else e for e in evaluations]
+    run = report_data(tmp_path / "run", doubtful)
+    assert run.recommended is not None
+    text = summary(run)
+    assert "Candidate: design" in text
+    assert "Not to be built yet" in text
+    assert "--confirm" in text
+    assert "Build design" not in text
+
+
+def test_a_search_that_still_finds_better_designs_is_not_settled(tmp_path, evaluations):
+    run = report_data(tmp_path / "run", evaluations)
+    assert run.late_growth[0] > 0.01
+    (said,) = reservations(run)
+    assert "has not settled" in said
+
+
+def test_the_choice_is_explained_with_its_distances_and_its_price(tmp_path, evaluations):
+    run = report_data(tmp_path / "run", evaluations)
+    (first, distance), (second, _) = run.ranking[:2]
+    assert first == run.recommended
+    assert f"at a distance of {distance:.2f}" in why(run)
+    assert f"design {run.entries[second].id} (" in why(run)
+    assert "above the lowest among them" in price(run)
+
+
+def test_strength_names_load_support_and_material(tmp_path, evaluations):
+    said = strength(report_data(tmp_path / "run", evaluations))
+    for words in ("250\u202fN pressing on face seat", "face mount held", "462\u202fMPa", "at least 10 is asked for"):
+        assert words in said
+
+
+def flights(run: ReportData, changes: list[float]) -> Validation:
+    old, design = {"thrust": 100.0}, dict(run.entries[run.recommended].evaluation.design)
+    found = []
+    for seed, change in enumerate(changes):
+        for role, theta, value in (
+            ("original", synthetic_run.BASELINE, 100.0),
+            ("recommended", design, 100.0 * (1.0 + change)),
+        ):
+            found.append(Flight(role, theta, "hover", seed, True, None, old | {"thrust": value}, {}))
+    return Validation(tuple(found), Disturbance())
+
+
+def test_a_gain_is_green_only_where_all_other_flights_agree(tmp_path, evaluations):
+    run = report_data(tmp_path / "run", evaluations)
+    assert evidence(run, None, 2).text == "one flight, no error estimate"
+    assert evidence(run, flights(run, [-0.02, -0.01, -0.015]), 2).sense == "good"
+    assert evidence(run, flights(run, [0.02, 0.01, 0.015]), 2).sense == "bad"
+    mixed = evidence(run, flights(run, [-0.02, 0.01, -0.015]), 2)
+    assert (mixed.sense, mixed.text) == ("", "not certain: −2.0\u202f% … +1.0\u202f% in 3 other flights")
+    assert "big open" in summary(run)
