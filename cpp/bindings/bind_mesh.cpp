@@ -13,7 +13,10 @@
 #include "fem/meshing/size_field.hpp"
 #include "fem/meshing/tet_mesher.hpp"
 #include "fem/smoothing/surface_smooth.hpp"
+#include "fem/surface/bodies.hpp"
 #include "fem/surface/mass_properties.hpp"
+#include "fem/surface/self_intersection.hpp"
+#include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/stl.hpp"
 #include "fem/surface/surface_check.hpp"
 #include "fem/surface/surface_features.hpp"
@@ -60,6 +63,28 @@ SurfaceMesh load_surface(const std::filesystem::path& file, double scale,
   return surface;
 }
 
+void check_solid(const SurfaceMesh& surface) {
+  check_surface(surface);
+  check_self_intersection(surface);
+  check_one_body(surface, find_patches(surface, MeshOptions{}.feature_angle));
+}
+
+SurfaceMesh labelled_by_angle(SurfaceMesh surface, double feature_angle_deg) {
+  label_by_angle(surface, feature_angle_deg * kDegree);
+  return surface;
+}
+
+double largest_distance(const SurfaceMesh& surface, const SurfaceMesh& other) {
+  if (other.triangles.rows() == 0) throw std::invalid_argument("other: there is no triangle");
+  const SolidOracle oracle(other, other.face);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < surface.points.rows(); ++i) {
+    const Eigen::Vector3d p = surface.points.row(i).transpose();
+    largest = std::max(largest, (oracle.nearest(p, -1).point - p).norm());
+  }
+  return largest;
+}
+
 void bind_surface(py::module_& m) {
   py::class_<SurfaceMesh>(m, "SurfaceMesh", R"(Triangles that belong to named faces, in metres.
 
@@ -84,6 +109,29 @@ Raises:
         return py::str("SurfaceMesh({} points, {} triangles, {} faces)")
             .format(surface.points.rows(), surface.triangles.rows(), surface.face_names.size());
       });
+  m.def(
+      "read_stl",
+      [](const std::filesystem::path& file, double scale) {
+        return read_stl(file.string(), scale);
+      },
+      "path"_a, "scale"_a = 1.0, py::call_guard<py::gil_scoped_release>(),
+      R"(The triangles of an STL file as they are, in metres, under one unnamed face: not checked.
+
+Raises:
+    MeshError: unreadable, truncated, another format, not finite, empty, huge.)");
+  m.def("check_surface", &check_solid, "surface"_a, py::call_guard<py::gil_scoped_release>(),
+        R"(Checks that a surface bounds one solid, with or without cavities.
+
+Raises:
+    MeshError: open, inside-out, not manifold, crossing itself, several bodies; the message says
+        what, where and why.)");
+  m.def(
+      "label_by_angle", &labelled_by_angle, "surface"_a, "feature_angle_deg"_a = 40.0,
+      py::call_guard<py::gil_scoped_release>(),
+      "The surface with one unnamed face for each piece bounded by edges sharper than the angle.");
+  m.def("largest_distance", &largest_distance, "surface"_a, "other"_a,
+        py::call_guard<py::gil_scoped_release>(),
+        "Largest distance of a point of one surface from the triangles of another. [m]");
   m.def("load_surface", &load_surface, "path"_a, "scale"_a = 1.0, py::kw_only(),
         "feature_angle_deg"_a = 40.0, py::call_guard<py::gil_scoped_release>(),
         R"(Closed surface of an STL file, binary or ASCII, in metres.

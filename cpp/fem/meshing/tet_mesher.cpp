@@ -13,6 +13,7 @@
 #include "fem/meshing/delaunay_mesher.hpp"
 #include "fem/meshing/linear_tets.hpp"
 #include "fem/meshing/tet_improve.hpp"
+#include "fem/surface/bodies.hpp"
 #include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/surface_check.hpp"
 #include "fem/surface/surface_features.hpp"
@@ -56,6 +57,28 @@ std::vector<double> boundary_areas(const TetMesh& mesh) {
   return areas;
 }
 
+// Named faces one by one; unnamed ones by their sum, as nobody asked for a sliver among them.
+void check_face_areas(const TetMesh& mesh, const SurfaceMesh& surface) {
+  const auto check = [](const std::string& what, double found, double wanted) {
+    if (std::abs(found - wanted) > kAreaSlack * wanted)
+      throw MeshError(what + " the area " + std::to_string(found * 1e6) + " mm² in the mesh and " +
+                      std::to_string(wanted * 1e6) +
+                      " mm² on the surface: the edge length is too large");
+  };
+  const std::vector<double> wanted = face_areas(surface);
+  const std::vector<double> found = boundary_areas(mesh);
+  double unnamed_wanted = 0.0, unnamed_found = 0.0;
+  for (std::size_t face = 0; face < wanted.size(); ++face) {
+    if (!surface.face_names[face].empty()) {
+      check("face '" + surface.face_names[face] + "' has", found[face], wanted[face]);
+      continue;
+    }
+    unnamed_wanted += wanted[face];
+    unnamed_found += found[face];
+  }
+  check("the unnamed faces have", unnamed_found, unnamed_wanted);
+}
+
 // How much the boundary may differ from the surface: sides keep the facet distance, sharp edges are
 // lines of the mesh.
 void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, const SizeField& size,
@@ -79,14 +102,7 @@ void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, cons
   if (std::abs(quality.volume - volume) > slack + 1e-6 * volume)
     throw MeshError("the mesh has the volume " + std::to_string(quality.volume * 1e9) +
                     " mm³ where the surface encloses " + std::to_string(volume * 1e9) + " mm³");
-  const std::vector<double> wanted = face_areas(surface);
-  const std::vector<double> found = boundary_areas(mesh);
-  for (std::size_t face = 0; face < wanted.size(); ++face)
-    if (std::abs(found[face] - wanted[face]) > kAreaSlack * wanted[face])
-      throw MeshError("face " + std::to_string(face) + " '" + surface.face_names[face] +
-                      "' has the area " + std::to_string(found[face] * 1e6) +
-                      " mm² in the mesh and " + std::to_string(wanted[face] * 1e6) +
-                      " mm² on the surface: the edge length is too large for it");
+  check_face_areas(mesh, surface);
 }
 
 }  // namespace
@@ -99,9 +115,12 @@ TetMesh tetrahedralize(const SurfaceMesh& input, const SizeField& size,
   SurfaceMesh surface = input;
   const double tolerance =
       std::min({options.simplify, kOfExtent * extent(input.points), kOfSize * smallest_size(size)});
-  const SimplifyReport simplified = simplify_surface(surface, tolerance, options.feature_angle);
-  if (options.check_intersections) check_self_intersection(surface);
+  const SimplifyReport simplified =
+      options.check_intersections
+          ? simplify_without_crossing(surface, tolerance, options.feature_angle)
+          : simplify_surface(surface, tolerance, options.feature_angle);
   const Patches patches = find_patches(surface, options.feature_angle);
+  check_one_body(surface, patches);
   const std::vector<FeatureLine> lines = find_feature_lines(surface, patches);
   const SolidOracle oracle(surface, patches.of_triangle);
   LinearTets tets = delaunay_mesh(surface, patches, lines, oracle, size, options);

@@ -11,6 +11,7 @@
 #include "fem/smoothing/edge_arcs.hpp"
 #include "fem/smoothing/patch_splitter.hpp"
 #include "fem/smoothing/smooth_normals.hpp"
+#include "fem/surface/self_intersection.hpp"
 #include "fem/surface/surface_check.hpp"
 
 namespace codesign::fem {

@@ -1,8 +1,11 @@
 // The only file that sees CGAL's intersection tests.
+#include "fem/surface/self_intersection.hpp"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <iterator>
 #include <string>
@@ -10,13 +13,14 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "fem/surface/surface_check.hpp"
 
 namespace codesign::fem {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Polyhedron = CGAL::Surface_mesh<Kernel::Point_3>;
+
+Kernel::Point_3 exact(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 std::string centre(const SurfaceMesh& surface, Eigen::Index t) {
   const Eigen::Vector3d p =
@@ -56,9 +60,49 @@ void check_self_intersection(const SurfaceMesh& surface) {
   const auto crossing = crossing_triangles(surface, 1);
   if (crossing.empty()) return;
   const auto [a, b] = crossing.front();
+  if (a == b)
+    throw MeshError("triangle " + std::to_string(a) + " at " + centre(surface, a) +
+                    " has no area: its corners lie on one line");
   throw MeshError("the surface crosses itself: triangle " + std::to_string(a) + " at " +
                   centre(surface, a) + " and triangle " + std::to_string(b) + " at " +
                   centre(surface, b));
+}
+
+bool is_degenerate(const Facet& facet) {
+  return CGAL::collinear(exact(facet.at[0]), exact(facet.at[1]), exact(facet.at[2]));
+}
+
+bool facets_cross(const Facet& s, const Facet& t) {
+  // Positions in s and t of the corners of one that the other has not, and of a common corner.
+  std::vector<std::size_t> only_s, only_t;
+  std::size_t common = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::count(t.point.begin(), t.point.end(), s.point[k]) == 0)
+      only_s.push_back(k);
+    else
+      common = k;
+    if (std::count(s.point.begin(), s.point.end(), t.point[k]) == 0) only_t.push_back(k);
+  }
+  const auto triangle = [](const Facet& f) {
+    return Kernel::Triangle_3(exact(f.at[0]), exact(f.at[1]), exact(f.at[2]));
+  };
+  const auto opposite_edge = [](const Facet& f, const std::vector<std::size_t>& ends) {
+    return Kernel::Segment_3(exact(f.at[ends[0]]), exact(f.at[ends[1]]));
+  };
+  switch (only_s.size()) {
+    case 3:
+      return CGAL::do_intersect(triangle(s), triangle(t));
+    case 2:  // beside the common corner they meet where the far edge of one meets the other
+      return CGAL::do_intersect(opposite_edge(s, only_s), triangle(t)) ||
+             CGAL::do_intersect(opposite_edge(t, only_t), triangle(s));
+    case 1: {  // folded flat onto each other about the common edge
+      const auto a = exact(s.at[common]), b = exact(s.at[3 - common - only_s[0]]);
+      const auto p = exact(s.at[only_s[0]]), q = exact(t.at[only_t[0]]);
+      return CGAL::coplanar(a, b, p, q) && CGAL::coplanar_orientation(a, b, p, q) == CGAL::POSITIVE;
+    }
+    default:
+      return true;  // the same three corners
+  }
 }
 
 }  // namespace codesign::fem

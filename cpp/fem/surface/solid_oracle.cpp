@@ -240,6 +240,20 @@ bool SolidOracle::contains(const Vector3d& p) const {
   return inside;
 }
 
+std::vector<int> SolidOracle::in_box(const Vector3d& lower, const Vector3d& upper) const {
+  const auto meets_box = [&](const Vector3d& low, const Vector3d& high) {
+    return (low.array() <= upper.array()).all() && (high.array() >= lower.array()).all();
+  };
+  std::vector<int> found;
+  traverse(meets_box, [&](std::size_t i) {
+    const auto& x = corners_[i].x;
+    if (meets_box(x[0].cwiseMin(x[1]).cwiseMin(x[2]), x[0].cwiseMax(x[1]).cwiseMax(x[2])))
+      found.push_back(order_[i]);
+    return false;
+  });
+  return found;
+}
+
 SolidOracle::Hit SolidOracle::nearest(const Vector3d& p, int group) const {
   Hit best{p, -1};
   double distance = kInfinity;

@@ -37,6 +37,9 @@ class SolidOracle {
   // Whether p lies inside; on the surface, either answer.
   bool contains(const Eigen::Vector3d& p) const;
 
+  // The triangles whose boxes meet the box from `lower` to `upper`.
+  std::vector<int> in_box(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) const;
+
   // The nearest point of the triangles of one group; group -1 stands for all.
   Hit nearest(const Eigen::Vector3d& p, int group) const;
 

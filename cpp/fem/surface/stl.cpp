@@ -15,6 +15,7 @@
 #include <unordered_set>
 
 #include "errors.hpp"
+#include "fem/surface/foreign_format.hpp"
 
 namespace codesign::fem {
 namespace {
@@ -286,6 +287,10 @@ SurfaceMesh parse_stl(std::string_view bytes, double scale) {
   const bool starts_as_text =
       start != bytes.npos && equal_ignoring_case(bytes.substr(start, 5), "solid");
   const bool has_zero_byte = bytes.substr(0, 1024).find('\0') != bytes.npos;
+  if (!binary_length && !starts_as_text) {
+    const std::string foreign = foreign_format(bytes);
+    if (!foreign.empty()) throw MeshError("not an STL file but " + foreign);
+  }
   Corners corners;
   if (binary_length || (bytes.size() >= kBinaryHeader && (!starts_as_text || has_zero_byte)))
     corners = parse_binary(bytes);

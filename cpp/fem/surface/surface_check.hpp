@@ -1,8 +1,5 @@
 #pragma once
 
-#include <utility>
-#include <vector>
-
 #include "fem/surface/surface_mesh.hpp"
 
 namespace codesign::fem {
@@ -19,13 +16,5 @@ struct SurfaceReport {
 // kMaxTriangles or 10 km, open, edges of more than two triangles, neighbours of opposite
 // orientation, inside-out, no volume.
 SurfaceReport check_surface(const SurfaceMesh& surface);
-
-// Up to `most` pairs of triangles that cross each other; those that share a corner or an edge may
-// touch there. Exact predicates. Throws MeshError if the surface touches itself in a point.
-std::vector<std::pair<int, int>> crossing_triangles(const SurfaceMesh& surface, int most);
-
-// Throws MeshError if two triangles cross each other, with a place; triangles that share a corner
-// or an edge may touch there. Exact predicates.
-void check_self_intersection(const SurfaceMesh& surface);
 
 }  // namespace codesign::fem

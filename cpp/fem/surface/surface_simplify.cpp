@@ -5,9 +5,12 @@
 #include <array>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "fem/surface/self_intersection.hpp"
+#include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/surface_features.hpp"
 
 namespace codesign::fem {
@@ -19,7 +22,7 @@ constexpr double kMostTurn = 0.5;  // cosine of the angle by which a triangle ma
 
 class Collapser {
  public:
-  Collapser(SurfaceMesh& surface, double tolerance, double feature_angle)
+  Collapser(SurfaceMesh& surface, double tolerance, double feature_angle, bool test_crossing)
       : surface_(surface),
         tolerance_(tolerance),
         triangles_at_(static_cast<std::size_t>(surface.points.rows())),
@@ -38,6 +41,7 @@ class Collapser {
           ++lines_at_[static_cast<std::size_t>(surface.triangles(t, k))];
       }
     }
+    if (test_crossing) original_.emplace(surface, patches.of_triangle);
   }
 
   SimplifyReport run() {
@@ -98,6 +102,7 @@ class Collapser {
           std::max(moved(a) + (target - point(a)).norm(), moved(b) + (target - point(b)).norm());
       if (distance > tolerance_ || !keeps_sides(a, b, target) || !keeps_sides(b, a, target))
         continue;
+      if (original_ && makes_crossing(a, b, target)) continue;
       surface_.points.row(a) = target.transpose();
       moved(a) = distance;
       merge(a, b, shared);
@@ -154,6 +159,39 @@ class Collapser {
     return true;
   }
 
+  // Triangle t as it is, or as it will be once b has been merged into a at the target.
+  Facet facet(int t, int a, int b, const Vector3d& target) const {
+    Facet facet;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int c = surface_.triangles(t, static_cast<int>(k));
+      facet.point[k] = c == b ? a : c;
+      facet.at[k] = c == a || c == b ? target : point(c);
+    }
+    return facet;
+  }
+
+  // Whether a triangle at a or b would cross another or lose its area. As no corner moves farther
+  // than the tolerance, those that may be met have their original boxes within it.
+  bool makes_crossing(int a, int b, const Vector3d& target) {
+    std::vector<int> moving = triangles_at(a);
+    moving.insert(moving.end(), triangles_at(b).begin(), triangles_at(b).end());
+    std::erase_if(moving, [&](int t) { return has_corner(t, a) && has_corner(t, b); });
+    return std::any_of(moving.begin(), moving.end(), [&](int t) {
+      const Facet moved = facet(t, a, b, target);
+      if (is_degenerate(moved)) return true;
+      const Vector3d margin = Vector3d::Constant(tolerance_);
+      const std::vector<int> near =
+          original_->in_box(moved.at[0].cwiseMin(moved.at[1]).cwiseMin(moved.at[2]) - margin,
+                            moved.at[0].cwiseMax(moved.at[1]).cwiseMax(moved.at[2]) + margin);
+      return std::any_of(near.begin(), near.end(), [&](int s) {
+        if (s == t || gone_[static_cast<std::size_t>(s)] || (has_corner(s, a) && has_corner(s, b)))
+          return false;
+        const Facet other = facet(s, a, b, target);
+        return !is_degenerate(other) && facets_cross(moved, other);
+      });
+    });
+  }
+
   void merge(int a, int b, const std::vector<int>& shared) {
     for (const int t : shared) {
       gone_[static_cast<std::size_t>(t)] = true;
@@ -199,13 +237,27 @@ class Collapser {
   std::vector<double> moved_;
   std::vector<bool> gone_;
   std::vector<int> triangles_of_face_;
+  std::optional<SolidOracle> original_;  // only if collapses are tested for crossing
 };
 
 }  // namespace
 
 SimplifyReport simplify_surface(SurfaceMesh& surface, double tolerance, double feature_angle) {
   if (!(tolerance > 0.0)) return {};
-  return Collapser(surface, tolerance, feature_angle).run();
+  return Collapser(surface, tolerance, feature_angle, false).run();
+}
+
+SimplifyReport simplify_without_crossing(SurfaceMesh& surface, double tolerance,
+                                         double feature_angle) {
+  const SurfaceMesh original = surface;
+  SimplifyReport report = simplify_surface(surface, tolerance, feature_angle);
+  if (report.collapsed > 0) {
+    if (crossing_triangles(surface, 1).empty()) return report;
+    surface = original;
+    report = Collapser(surface, tolerance, feature_angle, true).run();
+  }
+  check_self_intersection(surface);
+  return report;
 }
 
 }  // namespace codesign::fem

@@ -16,4 +16,10 @@ struct SimplifyReport {
 // feature_angle [rad]: what counts as a line.
 SimplifyReport simplify_surface(SurfaceMesh& surface, double tolerance, double feature_angle);
 
+// The same for a surface that must not cross itself: if it does after the collapses, they are
+// undone and made again, each with a test whether a triangle that it moves crosses another. Throws
+// MeshError (check_self_intersection) only for what crossed before.
+SimplifyReport simplify_without_crossing(SurfaceMesh& surface, double tolerance,
+                                         double feature_angle);
+
 }  // namespace codesign::fem

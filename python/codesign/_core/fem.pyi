@@ -34,11 +34,15 @@ __all__: list[str] = [
     "SurfaceMesh",
     "TetMesh",
     "Traction",
+    "check_surface",
     "face_area",
+    "label_by_angle",
+    "largest_distance",
     "load_surface",
     "load_vector",
     "mass_properties",
     "natural_modes",
+    "read_stl",
     "selected_nodes",
     "selected_triangles",
     "smooth_surface",
@@ -630,9 +634,30 @@ class StaticSystem:
         self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
     ) -> StaticResult: ...
 
+def check_surface(surface: SurfaceMesh) -> None:
+    """
+    Checks that a surface bounds one solid, with or without cavities.
+
+    Raises:
+        MeshError: open, inside-out, not manifold, crossing itself, several bodies; the message says
+            what, where and why.
+    """
+
 def face_area(mesh: TetMesh, triangles: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> float:
     """
     Area of curved boundary faces, m2.
+    """
+
+def label_by_angle(
+    surface: SurfaceMesh, feature_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 40.0
+) -> SurfaceMesh:
+    """
+    The surface with one unnamed face for each piece bounded by edges sharper than the angle.
+    """
+
+def largest_distance(surface: SurfaceMesh, other: SurfaceMesh) -> float:
+    """
+    Largest distance of a point of one surface from the triangles of another. [m]
     """
 
 def load_surface(
@@ -678,6 +703,14 @@ def natural_modes(
     supports: collections.abc.Sequence[Support],
     count: typing.SupportsInt | typing.SupportsIndex,
 ) -> NaturalModes: ...
+def read_stl(path: os.PathLike | str | bytes, scale: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> SurfaceMesh:
+    """
+    The triangles of an STL file as they are, in metres, under one unnamed face: not checked.
+
+    Raises:
+        MeshError: unreadable, truncated, another format, not finite, empty, huge.
+    """
+
 def selected_nodes(mesh: TetMesh, selection: Selection) -> list[int]:
     """
     Nodes that a selection holds, those of its faces included, sorted.

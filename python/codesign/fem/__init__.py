@@ -8,8 +8,10 @@ from codesign._core.fem import (
     SizeSource,
     SmoothReport,
     SurfaceMesh,
+    check_surface,
     load_surface,
     mass_properties,
+    read_stl,
     smooth_surface,
     tetrahedralize,
 )
@@ -33,6 +35,7 @@ from codesign.fem.model import (
     select_nodes,
     select_union,
 )
+from codesign.fem.repair import RepairReport, repair_surface
 from codesign.fem.static import (
     Buckling,
     Modes,
@@ -57,6 +60,7 @@ __all__ = [
     "MeshReport",
     "Modes",
     "Pressure",
+    "RepairReport",
     "Selection",
     "SizeField",
     "SizeSource",
@@ -68,12 +72,15 @@ __all__ = [
     "TetMesh",
     "Traction",
     "buckling_factors",
+    "check_surface",
     "faces_in_box",
     "faces_near",
     "faces_with_normal",
     "load_surface",
     "mass_properties",
     "natural_frequencies",
+    "read_stl",
+    "repair_surface",
     "select_faces",
     "select_nodes",
     "select_union",

@@ -216,7 +216,7 @@ def test_bad_surfaces_are_refused():
     apart = fem.SurfaceMesh(
         np.vstack([good.points, good.points + np.array([2, 0, 0])]), np.vstack([good.triangles, good.triangles + 8])
     )
-    with pytest.raises(MeshError, match="pieces"):
+    with pytest.raises(MeshError, match="2 bodies"):
         fem.tetrahedralize(apart, 0.3)
 
 

@@ -7,6 +7,7 @@
 
 #include "errors.hpp"
 #include "fem/smoothing/surface_smooth.hpp"
+#include "fem/surface/self_intersection.hpp"
 #include "fem/surface/surface_check.hpp"
 
 namespace codesign::fem {
