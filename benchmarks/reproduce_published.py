@@ -84,7 +84,7 @@ def compare(row: dict[str, str], model: dyn.Model, perturb: float) -> tuple[Comp
     seconds = time.process_time() - start
     outputs = published_robots.flown_outputs(log)
     least = least_eigenvalue(model, log)
-    reason = reason_to_drop(row, log, least, settings.limits.thrust_max)
+    reason = reason_to_drop(row, log, least, settings.actuators[0].thrust_max)
     found = Comparison(row, deviation(outputs, published_robots.published_outputs(row)), least, reason, 0.0)
     if perturb and row["qp_status"] == "0" and (reason or found.deviation > TOLERANCE):
         rng = np.random.default_rng(0)

@@ -127,7 +127,8 @@ void bind_histories(py::class_<FlightLog>& log) {
   bind_history<&L::thrust>(log, "thrust", Shape::kRows, "(N, jets) [N]");
   bind_history<&L::thrust_rate_command>(log, "thrust_rate_command", Shape::kRows,
                                         "(N, jets) [N/s]");
-  bind_history<&L::throttle>(log, "throttle", Shape::kRows, "(N, jets) [%], turbine jets only");
+  bind_history<&L::thrust_command>(log, "thrust_command", Shape::kRows,
+                                   "(N, jets) a rate [N/s], a thrust [N] or a throttle [%]");
   bind_history<&L::joint_velocity_command>(log, "joint_velocity_command", Shape::kRows,
                                            "(N, joints) [rad/s]");
   bind_history<&L::torque>(log, "torque", Shape::kRows, "(N, joints) [Nm]");

@@ -63,9 +63,6 @@ void bind_keywords(py::class_<Settings>& settings) {
 }
 
 void bind_reference_settings(py::module_& m) {
-  py::enum_<JetModel>(m, "JetModel", "Thrust dynamics of the jets.")
-      .value("integrator", JetModel::kIntegrator, "thrust is the sum of the commanded rates")
-      .value("turbine", JetModel::kTurbine, "second order, with throttle feedback linearisation");
   py::enum_<Integrator>(m, "Integrator", "How the plant is advanced over a control step.")
       .value("euler", Integrator::kEuler, "explicit, the published one")
       .value("semi_implicit_euler", Integrator::kSemiImplicitEuler)
@@ -119,8 +116,7 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("attitude_derivative", &Gains::attitude_derivative, "c1")
       .def_readwrite("posture", &Gains::posture, "(joints,) K_s [1/s]")
       .def_readwrite("torque_proportional", &Gains::torque_proportional, "k_P [1/s]")
-      .def_readwrite("torque_integral", &Gains::torque_integral, "k_I [1/s^2]")
-      .def_readwrite("turbine_rate", &Gains::turbine_rate, "[1/s]");
+      .def_readwrite("torque_integral", &Gains::torque_integral, "k_I [1/s^2]");
 
   py::class_<Weights> weights(m, "Weights", "Weights of the momentum QP and the torque QP.");
   bind_keywords(weights);
@@ -140,8 +136,6 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("joint_range_scale", &Limits::joint_range_scale, "(joints,)")
       .def_readwrite("joint_speed", &Limits::joint_speed, "[rad/s]")
       .def_readwrite("joint_slope", &Limits::joint_slope, "[1/rad]")
-      .def_readwrite("thrust_max", &Limits::thrust_max, "[N]")
-      .def_readwrite("thrust_rate", &Limits::thrust_rate, "[N/s]")
       .def_readwrite("thrust_slope", &Limits::thrust_slope, "[1/N]")
       .def_readwrite("torque", &Limits::torque, "[Nm]")
       .def_readwrite("torque_rate", &Limits::torque_rate, "[Nm/s]");
@@ -173,7 +167,29 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("B_D", &Turbine::B_D)
       .def_readwrite("B_UU", &Turbine::B_UU)
       .def_readwrite("c", &Turbine::c)
-      .def_readwrite("throttle_max", &Turbine::throttle_max, "[%]");
+      .def_readwrite("throttle_max", &Turbine::throttle_max, "[%]")
+      .def_readwrite("rate_gain", &Turbine::rate_gain,
+                     "of the feedback linearisation that follows a thrust rate [1/s]");
+
+  py::class_<RateIntegrator> integrator(m, "RateIntegrator", "Thrust follows the commanded rate.");
+  bind_keywords(integrator);
+
+  py::class_<FirstOrderLag> lag(
+      m, "FirstOrderLag", "A propeller behind its speed controller: T' = (command - T) / time.");
+  bind_keywords(lag);
+  lag.def_readwrite("time", &FirstOrderLag::time, "[s]");
+
+  py::class_<Actuator> actuator(
+      m, "Actuator", "What pushes the robot along a line fixed in a frame: a jet, a propeller.");
+  bind_keywords(actuator);
+  actuator.def_readwrite("frame", &Actuator::frame)
+      .def_readwrite("axis", &Actuator::axis, "(3,) unit vector in the frame; thrust pushes along")
+      .def_readwrite("reaction", &Actuator::reaction,
+                     "moment about the axis per thrust, as of a propeller's drag [N m/N]")
+      .def_readwrite("thrust_min", &Actuator::thrust_min, "[N]")
+      .def_readwrite("thrust_max", &Actuator::thrust_max, "[N]")
+      .def_readwrite("thrust_rate", &Actuator::thrust_rate, "largest [N/s]")
+      .def_readwrite("dynamics", &Actuator::dynamics, "RateIntegrator, FirstOrderLag or Turbine");
 
   py::class_<Disturbances> disturbances(m, "Disturbances", "What the controller does not know.");
   bind_keywords(disturbances);
@@ -197,7 +213,7 @@ void bind_settings(py::module_& m) {
   py::class_<FlightSettings> settings(
       m, "FlightSettings",
       "Everything that decides a flight besides the robot; SI units. Vectors over joints have the "
-      "order of `joints`, vectors over jets that of `jets`. Assign lists and arrays whole.");
+      "order of `joints`, vectors over jets that of `actuators`. Assign lists and arrays whole.");
   bind_keywords(settings);
   settings.def_readwrite("step", &FlightSettings::step, "of the control loop [s]")
       .def_readwrite("duration", &FlightSettings::duration, "[s]")
@@ -206,14 +222,12 @@ void bind_settings(py::module_& m) {
       .def_readwrite("rotation_deadband", &FlightSettings::rotation_deadband,
                      "base rotations of a plant step below this are dropped [rad]; published: 1e-6")
       .def_readwrite("joints", &FlightSettings::joints, "names")
-      .def_readwrite("jets", &FlightSettings::jets, "frames; thrust pushes along their -z")
+      .def_readwrite("actuators", &FlightSettings::actuators, "list of Actuator")
       .def_readwrite("base_pose", &FlightSettings::base_pose, "(4, 4)")
       .def_readwrite("initial_joints", &FlightSettings::initial_joints, "(joints,) [rad]")
       .def_readwrite("initial_thrusts", &FlightSettings::initial_thrusts, "(jets,) [N]")
       .def_readwrite("initial_free_fall", &FlightSettings::initial_free_fall,
                      "first step without jets and torques, as published")
-      .def_readwrite("jet_model", &FlightSettings::jet_model)
-      .def_readwrite("turbines", &FlightSettings::turbines, "one per jet")
       .def_readwrite("command_speeds", &FlightSettings::command_speeds)
       .def_readwrite("trajectory", &FlightSettings::trajectory, "list of CommandWindow")
       .def_readwrite("reference", &FlightSettings::reference)

@@ -66,7 +66,7 @@ class Flight {
   bool update_dynamics();
   FailureReason control(int k);
   FailureReason check_limits();
-  void command_throttles();
+  void command_jets();
   double lowest_point() const;
   void log_sample(int k);
   void fail(FailureReason reason, int k);
@@ -80,8 +80,8 @@ class Flight {
   PlantInputs inputs_;
   Gusts gusts_;
   std::vector<WatchedPoint> points_;
-  std::vector<TurbineState> turbines_;
-  Eigen::VectorXd thrust_, thrust_rate_, throttle_, joint_velocity_, force_, joint_force_;
+  std::vector<ThrustState> jets_;
+  Eigen::VectorXd thrust_, thrust_rate_, command_, joint_velocity_, force_, joint_force_;
   ControllerOrigin origin_;
   ReferenceGenerator reference_generator_;
   Reference reference_;
@@ -107,26 +107,26 @@ Flight::Flight(const Model& model, const FlightSettings& settings)
     : model_(model),
       settings_(settings),
       state_(initial_state(settings)),
-      terms_(model, settings.jets),
+      terms_(model, settings.actuators),
       joint_space_(model.joint_count()),
       plant_(model, settings),
       gusts_(settings),
       thrust_(settings.initial_thrusts),
       reference_generator_(settings, Vector3d::Zero(), Matrix3d::Identity()),
-      task_(static_cast<int>(settings.jets.size()), model.joint_count()),
-      qp_(static_cast<int>(settings.jets.size()) + model.joint_count()),
+      task_(static_cast<int>(settings.actuators.size()), model.joint_count()),
+      qp_(static_cast<int>(settings.actuators.size()) + model.joint_count()),
       qp_solver_(qp_.g.size() > 0 ? static_cast<int>(qp_.g.size()) : 1),
       torque_controller_(settings) {
-  const auto jets = static_cast<Index>(settings.jets.size());
+  const auto jets = static_cast<Index>(settings.actuators.size());
   const Index joints = model.joint_count();
   inputs_ = {Eigen::VectorXd::Zero(joints), Eigen::VectorXd::Zero(jets), Vector3d::Zero()};
-  for (Eigen::VectorXd* v : {&thrust_rate_, &throttle_}) v->setZero(jets);
+  for (Eigen::VectorXd* v : {&thrust_rate_, &command_}) v->setZero(jets);
   for (Eigen::VectorXd* v : {&joint_velocity_, &joint_force_}) v->setZero(joints);
   force_.setZero(model.dofs());
   for (const ContactPoint& point : settings.contact_points) {
     points_.push_back({frame_index(model, point.frame), point.position});
   }
-  for (const double thrust : settings.initial_thrusts) turbines_.push_back({thrust, 0.0});
+  for (const double thrust : settings.initial_thrusts) jets_.push_back({thrust, 0.0});
 }
 
 // Item 1: the state moves on under the torques and thrusts of the last step.
@@ -136,17 +136,13 @@ bool Flight::advance_plant(int k) {
   return plant_.advance(terms_, joint_space_, inputs_, state_);
 }
 
-// Item 2: the thrusts move on under the rates or throttles of the last step.
+// Item 2: the thrusts move on under the commands of the last step.
 void Flight::advance_jets(int k) {
   if (k == 0) return;
-  if (settings_.jet_model == JetModel::kIntegrator) {
-    thrust_ += settings_.step * thrust_rate_;
-    return;
-  }
-  for (std::size_t i = 0; i < turbines_.size(); ++i) {
+  for (std::size_t i = 0; i < jets_.size(); ++i) {
     const auto jet = static_cast<Index>(i);
-    turbines_[i] = advance(settings_.turbines[i], turbines_[i], throttle_[jet], settings_.step);
-    thrust_[jet] = turbines_[i].thrust;
+    jets_[i] = advance(settings_.actuators[i], jets_[i], command_[jet], settings_.step);
+    thrust_[jet] = jets_[i].thrust;
   }
 }
 
@@ -171,7 +167,7 @@ FailureReason Flight::control(int k) {
   if (solution.status != QpStatus::kSolved) return FailureReason::kMomentumQp;
   thrust_rate_ = solution.x.head(thrust_.size());
   joint_velocity_ = solution.x.tail(joint_velocity_.size());
-  if (settings_.jet_model == JetModel::kTurbine) command_throttles();
+  command_jets();
 
   force_ = -terms_.bias;
   add_jet_forces(model_, terms_, thrust_, force_);
@@ -187,11 +183,10 @@ FailureReason Flight::control(int k) {
   return FailureReason::kNotFailed;
 }
 
-void Flight::command_throttles() {
-  for (std::size_t i = 0; i < turbines_.size(); ++i) {
+void Flight::command_jets() {
+  for (std::size_t i = 0; i < jets_.size(); ++i) {
     const auto jet = static_cast<Index>(i);
-    throttle_[jet] = throttle_for_rate(settings_.turbines[i], turbines_[i], thrust_rate_[jet],
-                                       settings_.gains.turbine_rate);
+    command_[jet] = command_for_rate(settings_.actuators[i], jets_[i], thrust_rate_[jet]);
   }
 }
 
@@ -246,7 +241,7 @@ void Flight::log_sample(int k) {
   log.momentum_error.row(k) = error.transpose();
   log.thrust.row(k) = thrust_.transpose();
   log.thrust_rate_command.row(k) = thrust_rate_.transpose();
-  log.throttle.row(k) = throttle_.transpose();
+  log.thrust_command.row(k) = command_.transpose();
   log.joint_velocity_command.row(k) = joint_velocity_.transpose();
   log.torque.row(k) = inputs_.torque.transpose();
   log.wind.row(k) = inputs_.base_force.transpose();
@@ -270,7 +265,8 @@ void Flight::fail(FailureReason reason, int k) {
 
 FlightLog Flight::run() {
   const int samples = sample_count(settings_);
-  log_ = make_flight_log(samples, model_.joint_count(), static_cast<int>(settings_.jets.size()));
+  log_ =
+      make_flight_log(samples, model_.joint_count(), static_cast<int>(settings_.actuators.size()));
   log_.step = settings_.step;
   if (!update_dynamics()) fail(FailureReason::kSingularMass, 0);
   watch_ = {};
@@ -336,8 +332,8 @@ std::vector<MomentumQp> momentum_qps(const Model& model, const FlightSettings& s
   }
   std::vector<MomentumQp> qps;
   if (log.samples == 0) return qps;
-  const int jets = static_cast<int>(settings.jets.size());
-  RobotTerms terms(model, settings.jets);
+  const int jets = static_cast<int>(settings.actuators.size());
+  RobotTerms terms(model, settings.actuators);
   update_terms(model, logged_state(log, 0), terms);
   const ControllerOrigin origin = controller_origin(logged_state(log, 0), terms);
   ReferenceGenerator generator(settings, terms.com, logged_state(log, 0).base.R);

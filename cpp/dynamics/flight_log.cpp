@@ -15,7 +15,7 @@ FlightLog make_flight_log(int samples, int joints, int jets) {
   }
   log.momentum.resize(samples, 6);
   log.momentum_error.resize(samples, 6);
-  for (History* jet : {&log.thrust, &log.thrust_rate_command, &log.throttle}) {
+  for (History* jet : {&log.thrust, &log.thrust_rate_command, &log.thrust_command}) {
     jet->resize(samples, jets);
   }
   log.joint_velocity_command.resize(samples, joints);
@@ -31,7 +31,7 @@ void truncate(FlightLog& log) {
        {&log.time, &log.base_position, &log.base_rotation, &log.joint_positions, &log.velocity,
         &log.com, &log.com_reference, &log.com_velocity_reference, &log.rotation_reference,
         &log.angular_velocity_reference, &log.momentum, &log.momentum_error, &log.thrust,
-        &log.thrust_rate_command, &log.throttle, &log.joint_velocity_command, &log.torque,
+        &log.thrust_rate_command, &log.thrust_command, &log.joint_velocity_command, &log.torque,
         &log.wind, &log.clearance}) {
     history->conservativeResize(log.samples, Eigen::NoChange);
   }

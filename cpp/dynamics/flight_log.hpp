@@ -71,7 +71,7 @@ struct FlightLog {
   History momentum_error;              // (N, 6) E_l, E_w
   History thrust;                      // (N, jets)
   History thrust_rate_command;         // (N, jets)
-  History throttle;                    // (N, jets), zero with integrator jets [%]
+  History thrust_command;              // (N, jets) unit as the dynamics: [N/s], [N] or [%]
   History joint_velocity_command;      // (N, joints)
   History torque;                      // (N, joints)
   History wind;                        // (N, 3) force on the base's origin

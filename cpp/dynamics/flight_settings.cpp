@@ -65,11 +65,31 @@ void validate_run(const FlightSettings& s) {
   }
 }
 
+void validate_actuators(const FlightSettings& s) {
+  std::vector<std::string> frames;
+  for (const Actuator& actuator : s.actuators) {
+    const std::string name = "actuators[" + actuator.frame + "].";
+    frames.push_back(actuator.frame);
+    if (std::abs(actuator.axis.norm() - 1.0) > 1e-9) refuse(name + "axis", "is no unit vector");
+    if (!std::isfinite(actuator.reaction)) refuse(name + "reaction", "is not finite");
+    require_not_negative(name + "thrust_min", actuator.thrust_min);
+    require_positive(name + "thrust_max", actuator.thrust_max);
+    require_positive(name + "thrust_rate", actuator.thrust_rate);
+    if (actuator.thrust_min >= actuator.thrust_max) {
+      refuse(name + "thrust_min", "is not below thrust_max");
+    }
+    if (const auto* lag = std::get_if<FirstOrderLag>(&actuator.dynamics)) {
+      require_positive(name + "dynamics.time", lag->time);
+    }
+  }
+  require_unique("actuators", frames);
+}
+
 void validate_robot(const FlightSettings& s) {
   require_unique("joints", s.joints);
-  require_unique("jets", s.jets);
+  validate_actuators(s);
   const std::size_t joints = s.joints.size();
-  const std::size_t jets = s.jets.size();
+  const std::size_t jets = s.actuators.size();
   require_size("initial_joints", s.initial_joints, joints, "joint");
   require_size("initial_thrusts", s.initial_thrusts, jets, "jet");
   require_size("gains.posture", s.gains.posture, joints, "joint");
@@ -89,9 +109,6 @@ void validate_robot(const FlightSettings& s) {
       refuse("symmetry_pairs",
              "must name two different jets by index 0 … " + std::to_string(count - 1));
     }
-  }
-  if (s.jet_model == JetModel::kTurbine && s.turbines.size() != jets) {
-    refuse("turbines", "must have one per jet (" + std::to_string(jets) + ")");
   }
   for (const JointGroup& group : s.groups) {
     for (const std::string& name : group.joints) {
@@ -123,8 +140,6 @@ void validate_control(const FlightSettings& s) {
   require_positive("weights.torque", s.weights.torque);
   require_positive("limits.joint_speed", s.limits.joint_speed);
   require_positive("limits.joint_slope", s.limits.joint_slope);
-  require_positive("limits.thrust_max", s.limits.thrust_max);
-  require_positive("limits.thrust_rate", s.limits.thrust_rate);
   require_positive("limits.thrust_slope", s.limits.thrust_slope);
   require_positive("limits.torque", s.limits.torque);
   require_positive("limits.torque_rate", s.limits.torque_rate);
@@ -145,7 +160,7 @@ void validate_disturbances(const FlightSettings& s) {
     }
   }
   if (d.thrust_scale.size() > 0) {
-    require_size("disturbances.thrust_scale", d.thrust_scale, s.jets.size(), "jet");
+    require_size("disturbances.thrust_scale", d.thrust_scale, s.actuators.size(), "jet");
   }
   if (!d.wind_force.allFinite() || !d.gust_deviation.allFinite() ||
       d.gust_deviation.minCoeff() < 0.0) {

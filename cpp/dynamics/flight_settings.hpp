@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/jet.hpp"
+#include "dynamics/actuator.hpp"
 
 namespace codesign::dynamics {
 
 // Everything that decides a flight besides the robot: plain data, nothing of any robot in here.
 // SI units; vectors over joints have the order of FlightSettings::joints, vectors over jets that of
-// FlightSettings::jets. The default numbers are those of a humanoid with four jets of 250 N.
+// FlightSettings::actuators. The default numbers are those of a humanoid with four jets of 250 N.
 
 // A point of a body whose height is watched, for example a corner of a sole.
 struct ContactPoint {
@@ -53,7 +53,6 @@ struct Gains {
   Eigen::VectorXd posture;                          // K_s (joints) [1/s]
   double torque_proportional = 14.142135623730951;  // k_P [1/s]
   double torque_integral = 50.0;                    // k_I [1/s²]
-  double turbine_rate = 50.0;  // of the throttle's feedback linearisation [1/s]
 };
 
 // Weights of the momentum QP and of the torque QP.
@@ -73,8 +72,6 @@ struct Limits {
   Eigen::VectorXd joint_range_scale;         // (joints) factor on both
   double joint_speed = 0.78539816339744831;  // [rad/s]
   double joint_slope = 10.0;                 // of the tanh near the end of a range [1/rad]
-  double thrust_max = 250.0;                 // [N]; the least is 0
-  double thrust_rate = 200.0;                // [N/s]
   double thrust_slope = 2.0;                 // of the tanh near the end of the thrust range [1/N]
   double torque = 50.0;                      // [Nm]
   double torque_rate = 300.0;                // [Nm/s]
@@ -93,8 +90,6 @@ struct FailureLimits {
   double attitude_error = 1.5707963267948966;  // [rad]
   double joint_speed = 50.0;                   // [rad/s]
 };
-
-enum class JetModel { kIntegrator, kTurbine };
 
 // How the plant is advanced over one control step under held inputs.
 enum class Integrator {
@@ -126,14 +121,11 @@ struct FlightSettings {
   double rotation_deadband = 0.0;
 
   std::vector<std::string> joints;
-  std::vector<std::string> jets;  // frames; thrust pushes along their −z
+  std::vector<Actuator> actuators;
   Eigen::Matrix4d base_pose = Eigen::Matrix4d::Identity();
   Eigen::VectorXd initial_joints;   // (joints) [rad]
   Eigen::VectorXd initial_thrusts;  // (jets) [N]
   bool initial_free_fall = true;    // first step without jets and torques, as published
-
-  JetModel jet_model = JetModel::kIntegrator;
-  std::vector<Turbine> turbines;  // one per jet, for JetModel::kTurbine
 
   CommandSpeeds command_speeds;
   std::vector<CommandWindow> trajectory;

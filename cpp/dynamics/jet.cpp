@@ -14,29 +14,28 @@ double throttle_effect(const Turbine& turbine, double throttle) {
 
 }  // namespace
 
-double turbine_drift(const Turbine& turbine, const TurbineState& state) {
+double turbine_drift(const Turbine& turbine, const ThrustState& state) {
   const double T = state.thrust;
   const double D = state.thrust_rate;
   return turbine.K_T * T + turbine.K_TT * T * T + turbine.K_D * D + turbine.K_DD * D * D +
          turbine.K_TD * T * D + turbine.c;
 }
 
-double turbine_gain(const Turbine& turbine, const TurbineState& state) {
+double turbine_gain(const Turbine& turbine, const ThrustState& state) {
   return turbine.B_U + turbine.B_T * state.thrust + turbine.B_D * state.thrust_rate;
 }
 
-TurbineState advance(const Turbine& turbine, const TurbineState& state, double throttle,
-                     double step) {
+ThrustState advance(const Turbine& turbine, const ThrustState& state, double throttle,
+                    double step) {
   const double acceleration = turbine_drift(turbine, state) +
                               turbine_gain(turbine, state) * throttle_effect(turbine, throttle);
   return {state.thrust + step * state.thrust_rate + 0.5 * step * step * acceleration,
           state.thrust_rate + step * acceleration};
 }
 
-double throttle_for_rate(const Turbine& turbine, const TurbineState& state, double wanted_rate,
-                         double rate_gain) {
+double throttle_for_rate(const Turbine& turbine, const ThrustState& state, double wanted_rate) {
   const double wanted =
-      -(rate_gain * (state.thrust_rate - wanted_rate) + turbine_drift(turbine, state)) /
+      -(turbine.rate_gain * (state.thrust_rate - wanted_rate) + turbine_drift(turbine, state)) /
       turbine_gain(turbine, state);
   const double most = throttle_effect(turbine, turbine.throttle_max);
   const double effect = std::clamp(wanted, std::min(0.0, most), std::max(0.0, most));

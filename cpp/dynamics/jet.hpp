@@ -14,24 +14,23 @@ struct Turbine {
   double B_U = 0.0, B_T = 0.0, B_D = 0.0, B_UU = 0.0;
   double c = 0.0;
   double throttle_max = 120.0;  // [%]; the least is 0
+  double rate_gain = 50.0;      // of the feedback linearisation that follows a thrust rate [1/s]
 };
 
-struct TurbineState {
+struct ThrustState {
   double thrust = 0.0;       // [N]
   double thrust_rate = 0.0;  // [N/s]
 };
 
 // f and g above.
-double turbine_drift(const Turbine& turbine, const TurbineState& state);
-double turbine_gain(const Turbine& turbine, const TurbineState& state);
+double turbine_drift(const Turbine& turbine, const ThrustState& state);
+double turbine_gain(const Turbine& turbine, const ThrustState& state);
 
 // State after `step` seconds of constant throttle: T += h Ṫ + ½h² T̈, Ṫ += h T̈.
-TurbineState advance(const Turbine& turbine, const TurbineState& state, double throttle,
-                     double step);
+ThrustState advance(const Turbine& turbine, const ThrustState& state, double throttle, double step);
 
 // Throttle that makes T̈ = −rate_gain (Ṫ − wanted_rate), as far as its range allows (feedback
 // linearisation).
-double throttle_for_rate(const Turbine& turbine, const TurbineState& state, double wanted_rate,
-                         double rate_gain);
+double throttle_for_rate(const Turbine& turbine, const ThrustState& state, double wanted_rate);
 
 }  // namespace codesign::dynamics

@@ -115,13 +115,14 @@ namespace {
 
 // Bounds that close smoothly towards the ends of each range; outside a range the bound changes sign
 // and drives the variable back in.
-void write_bounds(const Limits& limits, const RobotState& state,
+void write_bounds(const FlightSettings& settings, const RobotState& state,
                   const Eigen::Ref<const Eigen::VectorXd>& thrusts, MomentumQp& qp) {
+  const Limits& limits = settings.limits;
   const Eigen::Index jets = thrusts.size();
   for (Eigen::Index i = 0; i < jets; ++i) {
-    qp.lower[i] = -limits.thrust_rate * std::tanh(limits.thrust_slope * thrusts[i]);
-    qp.upper[i] =
-        limits.thrust_rate * std::tanh(limits.thrust_slope * (limits.thrust_max - thrusts[i]));
+    const Actuator& jet = settings.actuators[static_cast<std::size_t>(i)];
+    qp.lower[i] = -jet.thrust_rate * std::tanh(limits.thrust_slope * (thrusts[i] - jet.thrust_min));
+    qp.upper[i] = jet.thrust_rate * std::tanh(limits.thrust_slope * (jet.thrust_max - thrusts[i]));
   }
   for (Eigen::Index j = 0; j < state.joints.size(); ++j) {
     const double scale = limits.joint_range_scale[j];
@@ -162,7 +163,7 @@ void build_momentum_qp(const FlightSettings& settings, const ControllerOrigin& o
   qp.g.tail(joints) +=
       w.posture * settings.gains.posture.cwiseProduct(state.joints - origin.posture);
 
-  write_bounds(settings.limits, state, thrusts, qp);
+  write_bounds(settings, state, thrusts, qp);
 }
 
 }  // namespace codesign::dynamics

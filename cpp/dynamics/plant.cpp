@@ -36,9 +36,10 @@ Plant::Plant(const Model& model, const FlightSettings& settings)
       rotation_deadband_(settings.rotation_deadband),
       has_model_masses_(settings.disturbances.mass_scale == 1.0 &&
                         settings.disturbances.mass_deviation == 0.0),
-      thrust_scale_(thrust_scales(settings.disturbances, static_cast<int>(settings.jets.size()))),
+      thrust_scale_(
+          thrust_scales(settings.disturbances, static_cast<int>(settings.actuators.size()))),
       thrust_(thrust_scale_),
-      terms_(model, settings.jets),
+      terms_(model, settings.actuators),
       joint_space_(model.joint_count()),
       stage_(zero_state(model)),
       origin_(stage_) {

@@ -7,14 +7,16 @@ namespace codesign::dynamics {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-RobotTerms::RobotTerms(const Model& model, const std::vector<std::string>& jet_frames)
+RobotTerms::RobotTerms(const Model& model, const std::vector<Actuator>& actuators)
     : kin(model), velocity(model), inertia(model), forces(model) {
   mass_matrix.setZero(model.dofs(), model.dofs());
   bias.setZero(model.dofs());
   momentum_matrix.setZero(6, model.dofs());
-  for (const std::string& name : jet_frames) {
-    MountedJet jet;
-    jet.frame = frame_index(model, name);
+  for (const Actuator& actuator : actuators) {
+    MountedActuator jet;
+    jet.frame = frame_index(model, actuator.frame);
+    jet.frame_axis = actuator.axis;
+    jet.reaction = actuator.reaction;
     for (int i = model.frames[static_cast<std::size_t>(jet.frame)].body; i > 0;
          i = model.bodies[static_cast<std::size_t>(i)].parent) {
       jet.chain.push_back(i);
@@ -33,10 +35,10 @@ void update_terms(const Model& model, const RobotState& state, RobotTerms& terms
   terms.momentum.noalias() = terms.momentum_matrix * state.velocity;
   terms.com = center_of_mass(terms.kin, terms.inertia);
   const Vector3d com_offset = terms.inertia.subtrees[0].com;
-  for (MountedJet& jet : terms.jets) {
+  for (MountedActuator& jet : terms.jets) {
     const Frame& frame = model.frames[static_cast<std::size_t>(jet.frame)];
     const BodyPose& body = terms.kin.bodies[static_cast<std::size_t>(frame.body)];
-    jet.axis = -(body.R * frame.body_T_frame.R.col(2));
+    jet.axis = body.R * (frame.body_T_frame.R * jet.frame_axis);
     jet.origin = body.p + body.R * frame.body_T_frame.p;
     jet.arm = jet.origin - com_offset;
   }
@@ -46,26 +48,28 @@ void add_jet_forces(const Model& model, const RobotTerms& terms,
                     const Eigen::Ref<const Eigen::VectorXd>& thrusts,
                     Eigen::Ref<Eigen::VectorXd> generalized) {
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
-    const MountedJet& jet = terms.jets[i];
+    const MountedActuator& jet = terms.jets[i];
     const Vector3d force = thrusts[static_cast<Eigen::Index>(i)] * jet.axis;
     generalized.head<3>() += force;
-    generalized.segment<3>(3) += jet.origin.cross(force);
+    const Vector3d moment = jet.reaction * force;
+    generalized.segment<3>(3) += jet.origin.cross(force) + moment;
     for (const int b : jet.chain) {
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
       const BodyPose& pose = terms.kin.bodies[static_cast<std::size_t>(b)];
-      generalized[model.column(body)] += body.type == JointType::kRevolute
-                                             ? pose.axis().dot((jet.origin - pose.p).cross(force))
-                                             : pose.axis().dot(force);
+      generalized[model.column(body)] +=
+          body.type == JointType::kRevolute
+              ? pose.axis().dot((jet.origin - pose.p).cross(force) + moment)
+              : pose.axis().dot(force);
     }
   }
 }
 
 void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A) {
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
-    const MountedJet& jet = terms.jets[i];
+    const MountedActuator& jet = terms.jets[i];
     const auto column = static_cast<Eigen::Index>(i);
     A.col(column).head<3>() = jet.axis;
-    A.col(column).tail<3>() = jet.arm.cross(jet.axis);
+    A.col(column).tail<3>() = jet.arm.cross(jet.axis) + jet.reaction * jet.axis;
   }
 }
 
@@ -82,13 +86,15 @@ void jet_map_rate(const Model& model, const RobotTerms& terms,
     Lambda.col(j).tail<3>() = total.cross(per_mass * terms.momentum_matrix.col(j).head<3>());
   }
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
-    const MountedJet& jet = terms.jets[i];
+    const MountedActuator& jet = terms.jets[i];
     const Vector3d force = thrusts[static_cast<Eigen::Index>(i)] * jet.axis;
-    // Per unit of a coordinate: d(force) = ω × force, d(arm) = velocity of the jet's origin.
+    // Per unit of a coordinate: d(force) = ω × force, d(moment) = reaction ω × force, d(arm) =
+    // velocity of the actuator's origin.
     const auto add = [&](Eigen::Index column, const Vector3d& omega, const Vector3d& velocity) {
       const Vector3d turn = omega.cross(force);
       Lambda.col(column).head<3>() += turn;
-      Lambda.col(column).tail<3>() += jet.arm.cross(turn) + velocity.cross(force);
+      Lambda.col(column).tail<3>() +=
+          jet.arm.cross(turn) + jet.reaction * turn + velocity.cross(force);
     };
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3d unit = Vector3d::Unit(axis);

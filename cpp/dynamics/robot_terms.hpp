@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/actuator.hpp"
 #include "dynamics/centroidal.hpp"
 #include "dynamics/rigid_body.hpp"
 
@@ -16,20 +17,22 @@ struct RobotState {
   Eigen::VectorXd velocity;  // (6 + n,)
 };
 
-// A jet on the robot: frame, the bodies it pushes (from its own down to, not including, the base),
-// and where it is at the present state; world axes.
-struct MountedJet {
+// An actuator on the robot: its frame, the bodies it pushes (from its own down to, not including,
+// the base), and where it is at the present state; world axes.
+struct MountedActuator {
   int frame = 0;
   std::vector<int> chain;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();    // unit vector along which thrust pushes
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // from the base origin [m]
-  Eigen::Vector3d arm = Eigen::Vector3d::Zero();     // from the centre of mass [m]
+  Eigen::Vector3d frame_axis = Eigen::Vector3d::Zero();  // in the frame
+  double reaction = 0.0;                                 // moment about the axis per thrust [m]
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();        // unit vector along which thrust pushes
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();      // from the base origin [m]
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();         // from the centre of mass [m]
 };
 
 // All that a control step needs to know of the robot at one state. Allocated once; written by
 // update_terms.
 struct RobotTerms {
-  RobotTerms(const Model& model, const std::vector<std::string>& jet_frames);
+  RobotTerms(const Model& model, const std::vector<Actuator>& actuators);
 
   KinematicsData kin;
   VelocityData velocity;
@@ -40,12 +43,12 @@ struct RobotTerms {
   Matrix6Xd momentum_matrix;    // C (6, 6+n)
   Vector6d momentum;            // (l; w) about the centre of mass
   Eigen::Vector3d com;          // in the world [m]
-  std::vector<MountedJet> jets;
+  std::vector<MountedActuator> jets;
 };
 
 void update_terms(const Model& model, const RobotState& state, RobotTerms& terms);
 
-// generalized (6+n,) += Σ Jᵢᵀ aᵢ Tᵢ for the thrusts T (jets,) [N].
+// generalized (6+n,) += Σ Jᵢᵀ (aᵢ; reactionᵢ aᵢ) Tᵢ for the thrusts T (jets,) [N].
 void add_jet_forces(const Model& model, const RobotTerms& terms,
                     const Eigen::Ref<const Eigen::VectorXd>& thrusts,
                     Eigen::Ref<Eigen::VectorXd> generalized);

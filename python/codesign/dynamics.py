@@ -1,6 +1,7 @@
 """Rigid-body dynamics of robots described by URDF, box-constrained QPs and jet-powered flight."""
 
 from codesign._core.dynamics import (
+    Actuator,
     BoxQpResult,
     BoxQpSolver,
     CommandSpeeds,
@@ -8,6 +9,7 @@ from codesign._core.dynamics import (
     ContactPoint,
     Disturbances,
     FailureLimits,
+    FirstOrderLag,
     FlightLog,
     FlightObjectives,
     FlightProfile,
@@ -15,12 +17,12 @@ from codesign._core.dynamics import (
     FlightStatus,
     Gains,
     Integrator,
-    JetModel,
     JointGroup,
     Limits,
     Model,
     ObjectiveParts,
     QpStatus,
+    RateIntegrator,
     ReferenceSettings,
     Turbine,
     Weights,
@@ -50,6 +52,7 @@ from codesign._core.dynamics import (
 )
 
 __all__ = [
+    "Actuator",
     "BoxQpResult",
     "BoxQpSolver",
     "CommandSpeeds",
@@ -57,6 +60,7 @@ __all__ = [
     "ContactPoint",
     "Disturbances",
     "FailureLimits",
+    "FirstOrderLag",
     "FlightLog",
     "FlightObjectives",
     "FlightProfile",
@@ -64,12 +68,12 @@ __all__ = [
     "FlightStatus",
     "Gains",
     "Integrator",
-    "JetModel",
     "JointGroup",
     "Limits",
     "Model",
     "ObjectiveParts",
     "QpStatus",
+    "RateIntegrator",
     "ReferenceSettings",
     "Turbine",
     "Weights",

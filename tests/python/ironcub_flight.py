@@ -98,7 +98,7 @@ def settings(trajectory: int = 1) -> dyn.FlightSettings:
     ranges = np.deg2rad(np.array(torso_range + 2 * arm_range + 2 * leg_range, dtype=float))
     return dyn.FlightSettings(
         joints=JOINTS,
-        jets=JETS,
+        actuators=[dyn.Actuator(frame=frame, thrust_max=250.0, thrust_rate=200.0) for frame in JETS],
         base_pose=base_pose,
         initial_joints=np.array(initial_joints),
         initial_thrusts=np.full(4, 175.0),

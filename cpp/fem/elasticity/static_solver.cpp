@@ -9,9 +9,9 @@
 #include "errors.hpp"
 #include "fem/boundary/rigid_motions.hpp"
 #include "fem/elasticity/stiffness.hpp"
+#include "fem/elasticity/two_level.hpp"
 #include "fem/la/cholesky.hpp"
 #include "fem/la/ordering.hpp"
-#include "fem/elasticity/two_level.hpp"
 #include "fem/stress/recovery.hpp"
 
 namespace codesign::fem {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fem/la/cholesky.hpp"
 #include "fem/elasticity/stiffness.hpp"
+#include "fem/la/cholesky.hpp"
 #include "fem/la/ordering.hpp"
 #include "fem/mesh/material.hpp"
 

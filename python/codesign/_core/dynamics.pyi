@@ -9,6 +9,7 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "Actuator",
     "BoxQpResult",
     "BoxQpSolver",
     "CommandSpeeds",
@@ -16,6 +17,7 @@ __all__: list[str] = [
     "ContactPoint",
     "Disturbances",
     "FailureLimits",
+    "FirstOrderLag",
     "FlightLog",
     "FlightObjectives",
     "FlightProfile",
@@ -23,12 +25,12 @@ __all__: list[str] = [
     "FlightStatus",
     "Gains",
     "Integrator",
-    "JetModel",
     "JointGroup",
     "Limits",
     "Model",
     "ObjectiveParts",
     "QpStatus",
+    "RateIntegrator",
     "ReferenceSettings",
     "Turbine",
     "Weights",
@@ -192,41 +194,6 @@ class BoxQpSolver:
         """
     @property
     def size(self) -> int: ...
-
-class JetModel:
-    """
-    Thrust dynamics of the jets.
-
-    Members:
-
-      integrator : thrust is the sum of the commanded rates
-
-      turbine : second order, with throttle feedback linearisation
-    """
-
-    __members__: typing.ClassVar[dict[str, JetModel]]
-    integrator: typing.ClassVar[JetModel]
-    turbine: typing.ClassVar[JetModel]
-    @typing.overload
-    def __eq__(self, other: JetModel) -> bool: ...
-    @typing.overload
-    def __eq__(self, other: typing.Any) -> bool: ...
-    def __getstate__(self) -> int: ...
-    def __hash__(self) -> int: ...
-    def __index__(self) -> int: ...
-    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
-    def __int__(self) -> int: ...
-    @typing.overload
-    def __ne__(self, other: JetModel) -> bool: ...
-    @typing.overload
-    def __ne__(self, other: typing.Any) -> bool: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
-    def __str__(self) -> str: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def value(self) -> int: ...
 
 class Integrator:
     """
@@ -515,13 +482,6 @@ class Gains:
         """
     @torque_proportional.setter
     def torque_proportional(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def turbine_rate(self) -> float:
-        """
-        [1/s]
-        """
-    @turbine_rate.setter
-    def turbine_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
 class Weights:
     """
@@ -611,20 +571,6 @@ class Limits:
         """
     @joint_upper.setter
     def joint_upper(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
-    @property
-    def thrust_max(self) -> float:
-        """
-        [N]
-        """
-    @thrust_max.setter
-    def thrust_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def thrust_rate(self) -> float:
-        """
-        [N/s]
-        """
-    @thrust_rate.setter
-    def thrust_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
     def thrust_slope(self) -> float:
         """
@@ -751,12 +697,103 @@ class Turbine:
     @c.setter
     def c(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
+    def rate_gain(self) -> float:
+        """
+        of the feedback linearisation that follows a thrust rate [1/s]
+        """
+    @rate_gain.setter
+    def rate_gain(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
     def throttle_max(self) -> float:
         """
         [%]
         """
     @throttle_max.setter
     def throttle_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class RateIntegrator:
+    """
+    Thrust follows the commanded rate.
+    """
+    def __copy__(self) -> RateIntegrator: ...
+    def __deepcopy__(self, arg0: dict) -> RateIntegrator: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+
+class FirstOrderLag:
+    """
+    A propeller behind its speed controller: T' = (command - T) / time.
+    """
+    def __copy__(self) -> FirstOrderLag: ...
+    def __deepcopy__(self, arg0: dict) -> FirstOrderLag: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def time(self) -> float:
+        """
+        [s]
+        """
+    @time.setter
+    def time(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Actuator:
+    """
+    What pushes the robot along a line fixed in a frame: a jet, a propeller.
+    """
+
+    frame: str
+    def __copy__(self) -> Actuator: ...
+    def __deepcopy__(self, arg0: dict) -> Actuator: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def axis(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) unit vector in the frame; thrust pushes along
+        """
+    @axis.setter
+    def axis(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def dynamics(self) -> RateIntegrator | FirstOrderLag | Turbine:
+        """
+        RateIntegrator, FirstOrderLag or Turbine
+        """
+    @dynamics.setter
+    def dynamics(self, arg0: RateIntegrator | FirstOrderLag | Turbine) -> None: ...
+    @property
+    def reaction(self) -> float:
+        """
+        moment about the axis per thrust, as of a propeller's drag [N m/N]
+        """
+    @reaction.setter
+    def reaction(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_max(self) -> float:
+        """
+        [N]
+        """
+    @thrust_max.setter
+    def thrust_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_min(self) -> float:
+        """
+        [N]
+        """
+    @thrust_min.setter
+    def thrust_min(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_rate(self) -> float:
+        """
+        largest [N/s]
+        """
+    @thrust_rate.setter
+    def thrust_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
 class Disturbances:
     """
@@ -824,7 +861,7 @@ class Disturbances:
 
 class FlightSettings:
     """
-    Everything that decides a flight besides the robot; SI units. Vectors over joints have the order of `joints`, vectors over jets that of `jets`. Assign lists and arrays whole.
+    Everything that decides a flight besides the robot; SI units. Vectors over joints have the order of `joints`, vectors over jets that of `actuators`. Assign lists and arrays whole.
     """
 
     command_speeds: CommandSpeeds
@@ -832,7 +869,6 @@ class FlightSettings:
     failure: FailureLimits
     gains: Gains
     integrator: Integrator
-    jet_model: JetModel
     limits: Limits
     reference: ReferenceSettings
     weights: Weights
@@ -846,6 +882,13 @@ class FlightSettings:
         """
         Raise ValueError naming the first attribute that is wrong.
         """
+    @property
+    def actuators(self) -> list[Actuator]:
+        """
+        list of Actuator
+        """
+    @actuators.setter
+    def actuators(self, arg0: collections.abc.Sequence[Actuator]) -> None: ...
     @property
     def base_pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
         """
@@ -900,13 +943,6 @@ class FlightSettings:
     @initial_thrusts.setter
     def initial_thrusts(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
     @property
-    def jets(self) -> list[str]:
-        """
-        frames; thrust pushes along their -z
-        """
-    @jets.setter
-    def jets(self, arg0: collections.abc.Sequence[str]) -> None: ...
-    @property
     def joints(self) -> list[str]:
         """
         names
@@ -958,13 +994,6 @@ class FlightSettings:
         """
     @trajectory.setter
     def trajectory(self, arg0: collections.abc.Sequence[CommandWindow]) -> None: ...
-    @property
-    def turbines(self) -> list[Turbine]:
-        """
-        one per jet
-        """
-    @turbines.setter
-    def turbines(self, arg0: collections.abc.Sequence[Turbine]) -> None: ...
 
 class FlightStatus:
     """
@@ -1208,14 +1237,14 @@ class FlightLog:
     @property
     def step(self) -> float: ...
     @property
-    def throttle(self) -> numpy.ndarray:
-        """
-        (N, jets) [%], turbine jets only
-        """
-    @property
     def thrust(self) -> numpy.ndarray:
         """
         (N, jets) [N]
+        """
+    @property
+    def thrust_command(self) -> numpy.ndarray:
+        """
+        (N, jets) a rate [N/s], a thrust [N] or a throttle [%]
         """
     @property
     def thrust_rate_command(self) -> numpy.ndarray:

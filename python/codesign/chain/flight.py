@@ -47,8 +47,7 @@ def flight_settings(
     settings.step = flight.step_s
     settings.duration = flight.duration_s
     settings.joints = joint_names(flight)
-    settings.jets = flight.jets.frames
-    _set_jet_model(settings, flight, jet_model or flight.jet_model)
+    settings.actuators = actuators(flight, jet_model or flight.jet_model)
     _set_initial_state(settings, flight)
     _set_references(settings, flight)
     _set_controller(settings, flight)
@@ -93,20 +92,53 @@ def _set_initial_state(settings: dyn.FlightSettings, flight: FlightConfig) -> No
     initial = flight.initial_state
     settings.base_pose = pose(initial.base_position_m, [angle * DEGREE for angle in initial.base_rpy_deg])
     settings.initial_joints = np.concatenate([group.initial_rad for group in flight.joint_groups])
-    settings.initial_thrusts = np.full(len(flight.jets.frames), initial.thrust_n)
+    settings.initial_thrusts = np.broadcast_to(initial.thrust_n, len(flight.jets.frames))
     settings.initial_free_fall = initial.free_fall_first_step
 
 
-def _set_jet_model(settings: dyn.FlightSettings, flight: FlightConfig, name: str) -> None:
-    if name not in dyn.JetModel.__members__:
-        raise StudyError(f"no jet model {name!r}; there are {', '.join(dyn.JetModel.__members__)}")
-    settings.jet_model = dyn.JetModel.__members__[name]
-    if name == "turbine":
-        if flight.turbine is None:
-            raise StudyError("jet model 'turbine' needs the section [flight.turbine]")
-        coefficients = {key: getattr(flight.turbine, key) for key in TURBINE_COEFFICIENTS}
-        turbine = dyn.Turbine(**coefficients, throttle_max=flight.turbine.max_throttle_percent)
-        settings.turbines = [turbine] * len(flight.jets.frames)
+def actuators(flight: FlightConfig, jet_model: str) -> list[dyn.Actuator]:
+    """What pushes the robot, in the order of the jets' frames. Raises: StudyError: no such jet model."""
+    jets = flight.jets
+    count = len(jets.frames)
+    axes = np.broadcast_to(np.array(jets.axes or [(0.0, 0.0, -1.0)]), (count, 3))
+    per_jet = {
+        "reaction": jets.reaction_n_m_per_n,
+        "thrust_min": jets.min_thrust_n,
+        "thrust_max": jets.max_thrust_n,
+        "thrust_rate": jets.max_thrust_rate_n_s,
+    }
+    numbers = {name: np.broadcast_to(value, count) for name, value in per_jet.items()}
+    dynamics = _thrust_dynamics(flight, jet_model)
+    return [
+        dyn.Actuator(
+            frame=frame,
+            axis=axes[i] / np.linalg.norm(axes[i]),
+            dynamics=dynamics[i],
+            **{name: float(v[i]) for name, v in numbers.items()},
+        )
+        for i, frame in enumerate(jets.frames)
+    ]
+
+
+def _thrust_dynamics(
+    flight: FlightConfig, jet_model: str
+) -> list[dyn.RateIntegrator | dyn.FirstOrderLag | dyn.Turbine]:
+    count = len(flight.jets.frames)
+    if jet_model == "integrator":
+        return [dyn.RateIntegrator()] * count
+    if jet_model == "lag":
+        return [dyn.FirstOrderLag(time=float(time)) for time in np.broadcast_to(flight.jets.lag_s, count)]
+    if jet_model != "turbine":
+        raise StudyError(f"no jet model {jet_model!r}; there are integrator, lag, turbine")
+    if flight.turbine is None:
+        raise StudyError("jet model 'turbine' needs the section [flight.turbine]")
+    coefficients = {key: getattr(flight.turbine, key) for key in TURBINE_COEFFICIENTS}
+    turbine = dyn.Turbine(
+        **coefficients,
+        throttle_max=flight.turbine.max_throttle_percent,
+        rate_gain=flight.turbine.throttle_gain,
+    )
+    return [turbine] * count
 
 
 def _set_references(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
@@ -142,7 +174,6 @@ def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
         posture=_per_joint(flight, "posture_gain_hz"),
         torque_proportional=gains.joint_proportional,
         torque_integral=gains.joint_integral,
-        turbine_rate=flight.turbine.throttle_gain if flight.turbine else 50.0,
     )
     settings.weights = dyn.Weights(
         momentum=weights.momentum,
@@ -161,8 +192,6 @@ def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
         joint_range_scale=_per_joint(flight, "range_scale"),
         joint_speed=limits.joint_speed_deg_s * DEGREE,
         joint_slope=limits.joint_speed_slope_per_rad,
-        thrust_max=flight.jets.max_thrust_n,
-        thrust_rate=flight.jets.max_thrust_rate_n_s,
         thrust_slope=limits.thrust_rate_slope_per_n,
         torque=limits.torque_n_m,
         torque_rate=limits.torque_rate_n_m_s,

@@ -96,7 +96,7 @@ class InitialStateConfig(Section, frozen=True, kw_only=True):
 
     base_position_m: Vector3
     base_rpy_deg: Vector3 = (0.0, 0.0, 0.0)
-    thrust_n: NonNegative
+    thrust_n: NonNegative | list[NonNegative]
     free_fall_first_step: bool = True
 
 
@@ -113,11 +113,21 @@ class JointGroupConfig(Section, frozen=True, kw_only=True):
 
 
 class JetsConfig(Section, frozen=True, kw_only=True):
-    """Frames whose minus z axis the thrust pushes along."""
+    """What pushes the robot: jets, propellers. Numbers are of all, or a list with one for each.
+
+    frames: where they sit. axes: unit vectors in the frames that the thrusts push along; empty: minus z of each.
+    reaction_n_m_per_n: moment about the axis per newton of thrust, the drag torque of a propeller; positive where it
+    turns the robot counter-clockwise about the axis. symmetric_pairs: frames whose thrust rates should agree. lag_s:
+    time constant of the jet model "lag".
+    """
 
     frames: list[str]
-    max_thrust_n: Positive
-    max_thrust_rate_n_s: Positive
+    max_thrust_n: Positive | list[Positive]
+    max_thrust_rate_n_s: Positive | list[Positive]
+    min_thrust_n: NonNegative | list[NonNegative] = 0.0
+    axes: list[Vector3] = []
+    reaction_n_m_per_n: float | list[float] = 0.0
+    lag_s: Positive | list[Positive] = 0.05
     symmetric_pairs: list[tuple[str, str]] = []
 
 
@@ -217,7 +227,7 @@ class FlightConfig(Section, frozen=True, kw_only=True):
     trajectory: str
     step_s: Positive
     duration_s: Positive
-    jet_model: Literal["integrator", "turbine"] = "integrator"
+    jet_model: Literal["integrator", "lag", "turbine"] = "integrator"
     initial_state: InitialStateConfig
     joint_groups: list[JointGroupConfig]
     jets: JetsConfig

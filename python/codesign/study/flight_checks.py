@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+
+import numpy as np
 
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, repeated, unknown
 from codesign.study.config import FlightConfig, StudyConfig
 
 MOST_SAMPLES = 1_000_000  # of a flight
+UNIT_TOLERANCE = 1e-6  # of the length of an axis
+PER_JET = ("max_thrust_n", "max_thrust_rate_n_s", "min_thrust_n", "reaction_n_m_per_n", "lag_s")
 
 
 def flight_problems(config: StudyConfig) -> Iterator[Problem]:
@@ -60,11 +65,30 @@ def _jet_problems(flight: FlightConfig) -> Iterator[Problem]:
         yield "flight.jets.frames", "empty: a robot flies on at least one jet"
     if twice := repeated(jets.frames):
         yield "flight.jets.frames", f"jet {twice!r} is named twice"
+    yield from _per_jet_problems(flight)
     for pair in jets.symmetric_pairs:
         for jet in pair:
             yield from unknown("flight.jets.symmetric_pairs", "jet", jet, jets.frames)
         if pair[0] == pair[1]:
             yield "flight.jets.symmetric_pairs", f"{pair[0]!r} is paired with itself"
+
+
+def _per_jet_problems(flight: FlightConfig) -> Iterator[Problem]:
+    """Lists that do not fit the frames, axes that are no unit vectors, empty ranges of thrust."""
+    jets, count = flight.jets, len(flight.jets.frames)
+    lists = {f"flight.jets.{name}": getattr(jets, name) for name in PER_JET}
+    lists |= {"flight.initial_state.thrust_n": flight.initial_state.thrust_n}
+    for key, value in lists.items():
+        if isinstance(value, list) and len(value) != count:
+            yield key, f"needs one number, or {count}: one for each of flight.jets.frames"
+    if jets.axes and len(jets.axes) != count:
+        yield "flight.jets.axes", f"needs {count} vectors, one for each of frames"
+    for frame, axis in zip(jets.frames, jets.axes, strict=False):
+        if abs(math.hypot(*axis) - 1.0) > UNIT_TOLERANCE:
+            yield "flight.jets.axes", f"{frame}: {list(axis)} is no unit vector"
+    least, most = np.atleast_1d(jets.min_thrust_n), np.atleast_1d(jets.max_thrust_n)
+    if len(least) in (1, len(most)) and not (least < most).all():
+        yield "flight.jets.min_thrust_n", "must be below max_thrust_n"
 
 
 def _trajectory_problems(config: StudyConfig) -> Iterator[Problem]:

@@ -76,7 +76,13 @@ inline FlightSettings settings() {
   for (const std::string side : {"l", "r"}) {
     for (const std::string name : {"pitch", "roll", "elbow"}) s.joints.push_back(side + "_" + name);
   }
-  s.jets = {"l_jet", "r_jet", "l_back", "r_back"};
+  for (const char* frame : {"l_jet", "r_jet", "l_back", "r_back"}) {
+    Actuator jet;
+    jet.frame = frame;
+    jet.thrust_max = 250.0;
+    jet.thrust_rate = 200.0;
+    s.actuators.push_back(jet);
+  }
   s.base_pose(2, 3) = 1.0;
   s.initial_joints = (Eigen::VectorXd(6) << -0.1, 0.2, -0.1, -0.1, 0.2, -0.1).finished();
   s.initial_thrusts.setConstant(4, 100.0);

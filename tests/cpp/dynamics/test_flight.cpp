@@ -97,7 +97,7 @@ TEST(Flight, DoesNotDependOnWhereAndWhichWayItStarts) {
 
 TEST(Flight, ReportsALossWithItsTimeAndReason) {
   FlightSettings settings = testing::settings();
-  settings.limits.thrust_max = 60.0;  // 240 N for 38 kg: it falls
+  for (Actuator& jet : settings.actuators) jet.thrust_max = 60.0;  // 240 N for 38 kg: it falls
   settings.initial_thrusts.setConstant(60.0);
   settings.failure.attitude_error = 3.0;
   const FlightLog log = simulate_flight(testing::model(), settings);
@@ -114,13 +114,12 @@ TEST(Flight, TurbineJetsFollowTheCommandedRates) {
   FlightSettings settings = testing::settings();
   Turbine turbine;
   turbine.K_T = -30.0, turbine.K_D = -2.0, turbine.B_U = 100.0, turbine.B_UU = 0.001;
-  settings.turbines.assign(4, turbine);
-  settings.jet_model = JetModel::kTurbine;
+  for (Actuator& jet : settings.actuators) jet.dynamics = turbine;
   settings.duration = 12.0;
   const FlightLog log = simulate_flight(testing::model(), settings);
   ASSERT_EQ(log.status, FlightStatus::kCompleted);
-  EXPECT_GE(log.throttle.minCoeff(), 0.0);
-  EXPECT_LE(log.throttle.maxCoeff(), 120.0);
+  EXPECT_GE(log.thrust_command.minCoeff(), 0.0);
+  EXPECT_LE(log.thrust_command.maxCoeff(), 120.0);
   const double weight = testing::model().total_mass * kGravity;
   EXPECT_NEAR(log.thrust.row(log.samples - 1).sum(), weight, 0.05 * weight);
 }
@@ -157,14 +156,16 @@ TEST(Flight, RefusesSettingsThatDoNotFit) {
   refused([](FlightSettings& s) { s.initial_joints.resize(5); });
   refused([](FlightSettings& s) { s.initial_thrusts[0] = std::nan(""); });
   refused([](FlightSettings& s) { s.symmetry_pairs = {{0, 4}}; });
-  refused([](FlightSettings& s) { s.jet_model = JetModel::kTurbine; });
+  refused([](FlightSettings& s) { s.actuators[1].axis *= 2.0; });
+  refused([](FlightSettings& s) { s.actuators[1].thrust_min = 300.0; });
+  refused([](FlightSettings& s) { s.actuators[1].dynamics = FirstOrderLag{0.0}; });
   refused([](FlightSettings& s) { s.groups[0].joints = {"nothing"}; });
   refused([](FlightSettings& s) { s.base_pose(0, 0) = 2.0; });
   refused([](FlightSettings& s) { s.limits.joint_lower[2] = 5.0; });
   refused([](FlightSettings& s) { s.disturbances.mass_deviation = 0.5; });
   refused([](FlightSettings& s) { s.trajectory[0].end = s.trajectory[0].start; });
   FlightSettings unknown_jet = testing::settings();
-  unknown_jet.jets[0] = "nothing";
+  unknown_jet.actuators[0].frame = "nothing";
   EXPECT_ANY_THROW(simulate_flight(model, unknown_jet));
 }
 

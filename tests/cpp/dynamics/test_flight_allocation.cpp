@@ -59,7 +59,7 @@ TEST_P(FlightAllocationTest, LoopDoesNotAllocateWithAnIndefiniteMassMatrix) {
 #endif
   const Model model = testing::unphysical_model();
   FlightSettings settings = testing::settings();
-  RobotTerms terms(model, settings.jets);
+  RobotTerms terms(model, settings.actuators);
   update_terms(model, {{}, settings.initial_joints, Eigen::VectorXd::Zero(model.dofs())}, terms);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(terms.mass_matrix);
   EXPECT_LT(eigen.eigenvalues()[1], -1e-3);

@@ -20,7 +20,7 @@ class MomentumControllerTest : public ::testing::Test {
   MomentumControllerTest()
       : model_(testing::model()),
         settings_(testing::settings()),
-        terms_(model_, settings_.jets),
+        terms_(model_, settings_.actuators),
         task_(4, model_.joint_count()),
         qp_(4 + model_.joint_count()) {
     state_.base.p = Vector3d(0.1, 0.2, 1.3);

@@ -32,7 +32,7 @@ class PlantTest : public ::testing::Test {
     settings_.step = step;
     settings_.substeps = substeps;
     Plant plant(model_, settings_);
-    RobotTerms terms(model_, settings_.jets);
+    RobotTerms terms(model_, settings_.actuators);
     JointSpace joint_space(model_.joint_count());
     RobotState state = tumbling_state(model_);
     for (int k = 0; k < steps; ++k) {
@@ -44,7 +44,7 @@ class PlantTest : public ::testing::Test {
   }
 
   RobotTerms terms_at(const RobotState& state) const {
-    RobotTerms terms(model_, settings_.jets);
+    RobotTerms terms(model_, settings_.actuators);
     update_terms(model_, state, terms);
     return terms;
   }

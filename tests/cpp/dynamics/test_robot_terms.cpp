@@ -23,15 +23,23 @@ RobotState random_state(const Model& model, std::mt19937_64& random) {
   return state;
 }
 
+// Two jets along −z of their frames, two tilted propellers with drag torques of either sense.
 class RobotTermsTest : public ::testing::TestWithParam<const char*> {
  protected:
+  RobotTermsTest() {
+    settings_.actuators[2].axis = Eigen::Vector3d(1.0, -2.0, 2.0) / 3.0;
+    settings_.actuators[2].reaction = 0.02;
+    settings_.actuators[3].axis = Eigen::Vector3d(0.6, 0.0, 0.8);
+    settings_.actuators[3].reaction = -0.05;
+  }
+
   Model model_ = testing::model(GetParam());
   FlightSettings settings_ = testing::settings();
   std::mt19937_64 random_{11};
 };
 
-TEST_P(RobotTermsTest, JetForcesAreTransposedJacobiansTimesThrust) {
-  RobotTerms terms(model_, settings_.jets);
+TEST_P(RobotTermsTest, JetWrenchesAreTransposedJacobiansTimesThrust) {
+  RobotTerms terms(model_, settings_.actuators);
   for (int trial = 0; trial < 5; ++trial) {
     update_terms(model_, random_state(model_, random_), terms);
     const Eigen::VectorXd thrusts = 100.0 * random_vector(random_, 4);
@@ -42,16 +50,18 @@ TEST_P(RobotTermsTest, JetForcesAreTransposedJacobiansTimesThrust) {
       Matrix6Xd J(6, model_.dofs());
       frame_jacobian(model_, terms.kin, terms.jets[i].frame, J);
       const Pose pose = frame_pose(model_, terms.kin, terms.jets[i].frame);
-      EXPECT_LT((terms.jets[i].axis + pose.R.col(2)).norm(), 1e-14);
-      expected +=
-          J.topRows<3>().transpose() * terms.jets[i].axis * thrusts[static_cast<Eigen::Index>(i)];
+      const Actuator& actuator = settings_.actuators[i];
+      EXPECT_LT((terms.jets[i].axis - pose.R * actuator.axis).norm(), 1e-14);
+      Vector6d wrench;
+      wrench << terms.jets[i].axis, actuator.reaction * terms.jets[i].axis;
+      expected += J.transpose() * wrench * thrusts[static_cast<Eigen::Index>(i)];
     }
     EXPECT_LT((force - expected).norm(), 1e-12 * expected.norm());
   }
 }
 
 TEST_P(RobotTermsTest, JetMapIsTheRateOfTheMomentum) {
-  RobotTerms terms(model_, settings_.jets);
+  RobotTerms terms(model_, settings_.actuators);
   JointSpace joint_space(model_.joint_count());
   for (int trial = 0; trial < 5; ++trial) {
     const RobotState state = random_state(model_, random_);
@@ -74,8 +84,8 @@ TEST_P(RobotTermsTest, JetMapIsTheRateOfTheMomentum) {
 }
 
 TEST_P(RobotTermsTest, LambdaIsTheDerivativeOfTheJetMapAlongAnyVelocity) {
-  RobotTerms terms(model_, settings_.jets), ahead(model_, settings_.jets),
-      behind(model_, settings_.jets);
+  RobotTerms terms(model_, settings_.actuators), ahead(model_, settings_.actuators),
+      behind(model_, settings_.actuators);
   for (int trial = 0; trial < 5; ++trial) {
     const RobotState state = random_state(model_, random_);
     const Eigen::VectorXd thrusts = 100.0 * random_vector(random_, 4);

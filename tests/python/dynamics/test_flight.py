@@ -88,7 +88,7 @@ def test_settings_name_what_is_wrong(shared_data: Path) -> None:
 
 def test_default_settings_name_no_robot() -> None:
     settings = dyn.FlightSettings()
-    assert settings.joints == [] and settings.jets == [] and settings.groups == [] and settings.trajectory == []
+    assert settings.joints == [] and settings.actuators == [] and settings.groups == [] and settings.trajectory == []
 
 
 def test_settings_copy_pickle_and_print() -> None:
