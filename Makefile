@@ -1,43 +1,65 @@
 # make run    set up what is missing, run the shipped study at a small size, print where its report is
-# make test   set up what is missing, run ctest, pytest and the linters
+# make test   set up what is missing, check the sources, run ctest and pytest
 # make help   everything else
 .DEFAULT_GOAL := help
-.PHONY: help setup run test format stubs colcon clean
+.PHONY: help setup run check test test-lowest coverage lock format stubs colcon clean
 
 PYTHON ?= python3
+SHELL := /bin/bash
 VENV := .venv
 BIN := $(VENV)/bin
 BUILD := build/python
 JOBS ?= $(shell nproc)
 PIP := $(BIN)/python -m pip --disable-pip-version-check
+INSTALL := $(PIP) install --constraint constraints.txt
 RUN_DIR ?= runs/quick-$(shell date +%Y%m%d-%H%M%S)
 RUN_DIR := $(RUN_DIR)
 CXX_SOURCES := $(shell find cpp cmake -type f) CMakeLists.txt
+PYTEST := $(BIN)/python -m pytest -m 'not slow' -n $(JOBS) --dist loadfile
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
+export BIN
 
 help:
 	@sed -n '1,3s/^# //p' Makefile
 	@echo 'make setup  only the set-up: Debian packages, $(VENV), build'
-	@echo 'make stubs  regenerate python/codesign/_core.pyi'
+	@echo 'make check  format, lint, types, stubs, layering (part of make test)'
+	@echo 'make test-lowest  the main jobs with the lowest versions of all packages that pyproject.toml allows'
+	@echo 'make coverage  the tests, with the share of the Python lines that they reach'
+	@echo 'make lock   write the installed versions into constraints.txt, which the set-up uses'
+	@echo 'make stubs  regenerate python/codesign/_core/*.pyi'
 	@echo 'make format apply clang-format and ruff'
 	@echo 'make colcon build and install as a colcon package into build/colcon'
 	@echo 'make clean  delete build/ and $(VENV)'
 
-# --- set-up: each step leaves a stamp and is not done again -----------------------------------------------------------
+# --- set-up: each step leaves a stamp and is not done again; files in $(VENV) and build/ hold the folder's path, so a
+# checkout that has been moved is set up again --------------------------------------------------------------------------
+MADE_IN := $(shell cat $(VENV)/folder 2>/dev/null)
+ifneq ($(MADE_IN),)
+ifneq ($(MADE_IN),$(CURDIR))
+$(info $(VENV) and build were made in $(MADE_IN): setting up again)
+$(shell rm -rf $(VENV) build)
+endif
+endif
+
 $(VENV)/system.stamp: apt-packages.txt scripts/install_system_packages
+	@echo '== set-up: Debian packages'
 	scripts/install_system_packages apt-packages.txt
 	$(PYTHON) -m venv $(VENV)
+	@echo '$(CURDIR)' > $(VENV)/folder
 	@touch $@
 
-$(VENV)/runtime.stamp: pyproject.toml $(CXX_SOURCES) | $(VENV)/system.stamp
-	$(PIP) install --quiet 'scikit-build-core>=0.10' 'pybind11>=2.12'
-	$(PIP) install --quiet --no-build-isolation --editable '.[view,cluster,analysis]'
+$(VENV)/runtime.stamp: pyproject.toml constraints.txt $(CXX_SOURCES) | $(VENV)/system.stamp
+	@echo '== set-up: Python packages (about 400 MB the first time)'
+	$(INSTALL) --requirement <($(BIN)/python scripts/dependencies.py view cluster analysis)
+	@echo '== set-up: compiling (some minutes the first time)'
+	$(INSTALL) --verbose --no-deps --no-build-isolation --editable .
 	@touch $@
 
-$(VENV)/test.stamp: apt-packages-test.txt $(VENV)/runtime.stamp pyproject.toml
+$(VENV)/test.stamp: apt-packages-test.txt $(VENV)/runtime.stamp
+	@echo '== set-up: packages of the tests'
 	scripts/install_system_packages apt-packages-test.txt
-	$(PIP) install --quiet 'setuptools>=70.1' # that of Python 3.11's venv makes no wheels of packages that come as source
-	$(PIP) install --quiet --no-build-isolation --editable '.[view,cluster,analysis,test]'
+	$(INSTALL) 'setuptools>=70.1' # that of Python 3.11's venv makes no wheels of packages that come as source
+	$(INSTALL) --no-build-isolation --requirement <($(BIN)/python scripts/dependencies.py test)
 	@touch $@
 
 setup: $(VENV)/runtime.stamp
@@ -47,13 +69,26 @@ run: setup
 	$(BIN)/codesign optimize --population 12 --generations 3 --seed 1 --out $(RUN_DIR)
 	$(BIN)/codesign report $(RUN_DIR)
 
-test: $(VENV)/test.stamp
+test: check
 	cmake -S . -B $(BUILD) -DCODESIGN_BUILD_TESTS=ON >/dev/null
 	cmake --build $(BUILD)
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
-	$(BIN)/python -m pytest -m 'not slow' -n $(JOBS) --dist loadfile
+	$(PYTEST)
+
+check: $(VENV)/test.stamp
+	scripts/check
 
 # --- for developers ------------------------------------------------------------------------------------------------------
+test-lowest: setup
+	$(BIN)/python scripts/test_lowest.py
+
+coverage: $(VENV)/test.stamp
+	$(PYTEST) --cov --cov-report=term:skip-covered --cov-report=html:build/coverage
+
+lock: $(VENV)/test.stamp
+	scripts/lock > build/constraints.txt
+	mv build/constraints.txt constraints.txt
+
 stubs: $(VENV)/test.stamp
 	$(BIN)/python scripts/make_stubs.py
 

@@ -1,5 +1,7 @@
 """Typed errors: what went wrong, where and why. Every error of the product derives from CodesignError."""
 
+from __future__ import annotations
+
 
 class CodesignError(Exception):
     """Base of all errors that a user's input or a numerical breakdown can cause."""
@@ -39,3 +41,13 @@ class StoreError(CodesignError):
 
 class ExecutionError(CodesignError):
     """Evaluations cannot be run at all: workers do not start, keep dying, or disagree with the study."""
+
+
+class LibraryError(CodesignError):
+    """A library that is missing or cannot be loaded; the message names it and the remedy."""
+
+    @classmethod
+    def of(cls, error: ImportError, use: str | None = None) -> LibraryError:
+        """What a failed import means; use: what needs the library."""
+        subject = f"{use} needs a library that cannot be loaded: " if use else ""
+        return cls(f"{subject}{' '.join(str(error).split())}; `codesign doctor` shows what is missing")

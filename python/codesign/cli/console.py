@@ -124,3 +124,20 @@ def _describe_facets(facets: dict[str, Any]) -> str:
     left = f", {facets['left']} left lest they fold" if facets["left"] else ""
     distance, volume = f"{1e3 * facets['max_distance']:.2g} mm", f"{facets['volume_change']:+.2%}"
     return f"{facets['facets']} by up to {distance}, volume {volume}{left}"
+
+
+def print_diagnosis(report: dict[str, Any]) -> None:
+    """What `codesign doctor` found: facts as a table, then a line for each problem."""
+    table = Table(show_header=False, box=None, pad_edge=False)
+    for key, value in report.items():
+        if key == "problems":
+            continue
+        if isinstance(value, dict):
+            for name, item in value.items():
+                table.add_row(f"{key} {name}", str(item))
+        else:
+            table.add_row(key, ", ".join(value) if isinstance(value, list) else str(value))
+    out.print(table)
+    for kind, names in report["problems"].items():
+        for name in names:
+            out.print(Text.assemble((kind, "bold red"), f": {name}"), soft_wrap=True, highlight=False)

@@ -15,17 +15,19 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
+from codesign import __version__
 from codesign.cli.console import (
     err,
     out,
     print_confirmations,
+    print_diagnosis,
     print_evaluation,
     print_json,
     print_run,
     print_stress,
     shown,
 )
-from codesign.errors import CodesignError, DesignError, StudyError
+from codesign.errors import CodesignError, DesignError, LibraryError, StudyError
 
 if TYPE_CHECKING:
     from codesign.search.optimization import Resources
@@ -43,6 +45,22 @@ ClusterOption = Annotated[str | None, typer.Option(help="Dask scheduler tcp://ho
 RunArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run.")]
 DEFAULT_STUDY = "ironcub"
 EXAMPLE_DESIGN = "--set angle=15 --set distance=42 --set offset=80 --set length=108"
+
+
+def print_version(asked: bool) -> None:
+    """Prints the version and ends, if asked."""
+    if asked:
+        out.print(f"codesign {__version__}", highlight=False)
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=print_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+) -> None:
+    """Co-design of parametric parts, robot and controller."""
 
 
 def parse_design(assignments: list[str]) -> dict[str, float]:
@@ -346,22 +364,15 @@ def stress(
 
 @app.command(epilog="Example: `codesign doctor`")
 def doctor(as_json: JsonOption = False) -> int:
-    """Versions, BLAS in use, cores, and what is missing."""
+    """Versions, BLAS in use, cores; what is missing, too old or cannot be loaded."""
     from codesign.cli.doctor import diagnose
 
     report = diagnose()
     if as_json:
         print_json(report)
     else:
-        table = Table(show_header=False, box=None, pad_edge=False)
-        for key, value in report.items():
-            if isinstance(value, dict):
-                for name, item in value.items():
-                    table.add_row(f"{key} {name}", str(item))
-            else:
-                table.add_row(key, ", ".join(value) if isinstance(value, list) else str(value))
-        out.print(table)
-    return 1 if report["missing"] else 0
+        print_diagnosis(report)
+    return 1 if report["problems"] else 0
 
 
 def main() -> None:
@@ -370,7 +381,8 @@ def main() -> None:
     command = typer.main.get_command(app)
     try:
         code = command.main(standalone_mode=False)
-    except CodesignError as error:
+    except (CodesignError, ImportError) as problem:
+        error = LibraryError.of(problem) if isinstance(problem, ImportError) else problem
         if "--json" in sys.argv:
             print_json({"error": {"type": type(error).__name__, "message": str(error)}})
         err.print(Text.assemble((type(error).__name__, "bold red"), f": {error}"), soft_wrap=True)

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from codesign.errors import LibraryError
 from codesign.geometry.mesh_files import write_3mf, write_glb, write_stl
 from codesign.parts.component import Component, distinct_parts
 from codesign.parts.part import EXPORT_RESOLUTION
@@ -20,7 +21,10 @@ def export_parts(components: Sequence[Component], folder: str | os.PathLike[str]
 
     Raises: GeometryError if a part cannot be built; ValueError if two different parts share a name.
     """
-    from codesign.parts.step import part_breps, write_step, write_step_assembly  # OpenCASCADE only when asked for
+    try:
+        from codesign.parts.step import part_breps, write_step, write_step_assembly  # OpenCASCADE only when asked for
+    except ImportError as error:
+        raise LibraryError.of(error, "STEP") from error
 
     parts = {part.name: part for part in distinct_parts(components)}
     if len(parts) != len(distinct_parts(components)):

@@ -95,5 +95,5 @@ def test_new_study_runs_from_its_folder(tmp_path, monkeypatch):
 
 def test_doctor_knows_what_is_there():
     document = json.loads(codesign("doctor", "--json").stdout)
-    assert document["missing"] == []
+    assert document["problems"] == {}
     assert document["libraries"]["CGAL"]
