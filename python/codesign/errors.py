@@ -51,3 +51,7 @@ class LibraryError(CodesignError):
         """What a failed import means; use: what needs the library."""
         subject = f"{use} needs a library that cannot be loaded: " if use else ""
         return cls(f"{subject}{' '.join(str(error).split())}; `codesign doctor` shows what is missing")
+
+
+class ExportError(CodesignError):
+    """A folder that an export may not or cannot be written into."""

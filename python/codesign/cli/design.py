@@ -8,42 +8,91 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import meshio
 import numpy as np
 
-from codesign import fem
-from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields
+from codesign import _core, fem
+from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields, stress_settings
+from codesign.cli.export_folder import MANIFEST, export_folder, files_in
+from codesign.cli.order import Order
+from codesign.errors import DesignError
+from codesign.fem.vtu import StressModel, write_vtu
 from codesign.files import write_text
 from codesign.parts.cad_export import export_parts
 from codesign.parts.component import Component
+from codesign.parts.load_case import part_case
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design
+from codesign.report.study_words import part_words
 from codesign.robot.package import write_urdf_package
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
 
 
-def export_design(study: Study, theta: Mapping[str, float], out: str | Path) -> list[Path]:
+def export_design(
+    study: Study,
+    theta: Mapping[str, float],
+    out: str | Path,
+    *,
+    chosen: str = "",
+    organization: str = "",
+    force: bool = False,
+) -> list[Path]:
     """Evaluates a design and writes its files into a folder (made if absent); returns their paths.
 
-    `evaluation.json`: all numbers. `cad/`: STL and STEP of each part and its mirror image, 3MF; GLB and STEP assembly
-    of all of them in their places on the robot. `robot/`: URDF with meshes. `stress/`: VTU of each part.
-    Raises: DesignError, CodesignError of the chain.
+    `README.md`, `manifest.json`, `bom.csv`: what it is, of what, how many, in which units. `evaluation.json`: all
+    numbers. `cad/`: STL and STEP of each part and its mirror image, 3MF of all pieces side by side; GLB and STEP
+    assembly of all of them in their places on the robot. `robot/`: URDF with meshes. `stress/`: VTU of each part.
+
+    chosen: how the design was found, in words. organization: for the files' headers. force: replace another design's
+    export.
+
+    Raises: DesignError; ExportError if the folder holds something else; CodesignError of the chain.
     """
     out = Path(out)
     design = study.space.design(theta)
     parts = build_parts(study, design)
-    components = placed_components(study, design, parts)
-    out.mkdir(parents=True, exist_ok=True)
-    with ThreadPoolExecutor(1) as beside:  # the native chain releases the interpreter's lock
-        chain = beside.submit(evaluate_with_fields, study, design)
-        drawn = export_parts([component for component, _ in components], out / "cad")
-        drawn.append(_write_robot(study, design, components, out / "robot"))
-        evaluation, analyses, _ = chain.result()
-    files = [write_text(out / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1)), *drawn]
-    fields = [write_vtu(a.mesh, a.result, out / "stress" / f"{name}.vtu") for name, a in analyses.items()]
-    return files + fields
+    placed = placed_components(study, design, parts)
+    order = Order(study, design, [component for component, _ in placed], chosen, organization)
+    with export_folder(out, order.revision, force) as folder:
+        with ThreadPoolExecutor(1) as beside:  # the native chain releases the interpreter's lock
+            chain = beside.submit(evaluate_with_fields, study, design)
+            export_parts(
+                order.components, folder / "cad", revision=order.revision, organization=organization or study.title
+            )
+            _write_robot(study, design, placed, folder / "robot")
+            evaluation, analyses, _ = chain.result()
+        models = {
+            name: _write_stress(order, name, parts[name], analysis, folder / "stress")
+            for name, analysis in analyses.items()
+        }
+        write_text(folder / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1))
+        write_text(folder / "bom.csv", order.bill_of_materials())
+        write_text(folder / "README.md", order.page(evaluation, models))
+        files = [str(path.relative_to(folder)) for path in files_in(folder)] + [MANIFEST]
+        write_text(folder / MANIFEST, order.manifest(evaluation, models, files))
+    return [out / file for file in sorted(files)]
+
+
+def design_of_run(run_directory: Path, selector: str) -> tuple[Study, dict[str, float], str]:
+    """The study of a run, a design of it (`recommended` or a number), and where that comes from in words.
+
+    Raises: StoreError, StudyError, DesignError.
+    """
+    from codesign.followup.validation import select
+    from codesign.report.reading import read_report_data, study_of
+
+    study = study_of(run_directory)
+    if study is None:
+        raise DesignError(f"{run_directory}: the run's study cannot be loaded any more")
+    run = read_report_data(run_directory, study)
+    found = select(run, [selector])
+    if len(found) != 1:
+        raise DesignError(f"--design {selector}: one design is needed, recommended or a number")
+    ((role, design),) = found.items()
+    number = next(entry.id for entry in run.entries if entry.evaluation.design == design)
+    words = f"design {number} of {run_directory.name}" + ("" if role.startswith("design") else f" ({role})")
+    return study, design, words
 
 
 def placed_components(study: Study, design: Design, parts: Mapping[str, Part]) -> list[tuple[Component, str]]:
@@ -71,27 +120,44 @@ def _write_robot(study: Study, design: Design, components: list[tuple[Component,
     return write_urdf_package(robot, folder, writers)
 
 
-def write_vtu(mesh: fem.TetMesh, result: fem.StaticResult, path: Path) -> Path:
-    """Writes the fields of an analysis for ParaView.
+def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnalysis, folder: Path) -> str:
+    """VTU of a part's analysis, and of the whole part where one half was analysed; returns what the model is in words.
 
-    At the nodes displacement [m], stress [Pa; xx yy zz xy yz zx] and von Mises stress [Pa]; of each element `error`,
-    how far its own stress is from the recovered one [Pa].
+    The file names say it too: NAME_simplified_half.vtu, NAME_simplified_whole.vtu.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    field = meshio.Mesh(
-        np.array(mesh.nodes),
-        [("tetra10", np.array(mesh.tets))],
-        point_data={
-            "displacement": np.array(result.displacement),
-            "stress": np.array(result.stress),
-            "von_mises": np.array(result.von_mises),
-        },
-        cell_data={"error": [np.array(result.element_error)]},
-    )
-    temporary = path.with_name(f".{path.name}.tmp.vtu")
-    try:
-        meshio.write(temporary, field, file_format="vtu")
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-    return path
+    config = order.study.configured(order.design)
+    settings = stress_settings(config, name)
+    planes = _symmetry_planes(analysis.mesh, part_case(part, settings).supports)
+    simplified = settings.geometry == "simplified" and part.fem_shape("simplified") != part.fem_shape("full")
+    kind = "simplified" if simplified else "full"
+    words = f"{kind} geometry" + (f", 1/{2 ** len(planes)} of the symmetric part" if planes else ", whole part")
+    stem = f"{name}_simplified" if simplified else name
+    result = analysis.result
+    notes = {
+        "part": part.title,
+        "model": words,
+        "load_case": part_words(config)[name].load,
+        "material": settings.material.name,
+        "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa",
+        "design": ", ".join(f"{key} = {value:g}" for key, value in order.design.items()),
+        "revision": order.revision,
+    }
+    model = StressModel.of(analysis.mesh, result)
+    write_vtu(model, folder / (f"{stem}_half.vtu" if planes else f"{stem}.vtu"), notes)
+    if planes:
+        for point, normal in planes:
+            model = model.with_mirror_image(point, normal)
+        write_vtu(model, folder / f"{stem}_whole.vtu", notes | {"model": f"{words}, and its mirror image"})
+    return words
+
+
+def _symmetry_planes(mesh: fem.TetMesh, supports: list[_core.fem.Support]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Point and unit normal of every plane that cuts the model off from its mirror image."""
+    planes = []
+    for support in supports:
+        if support.symmetry:
+            faces = [mesh.face_names.index(face) for face in support.where.faces]
+            nodes = mesh.nodes[np.unique(mesh.boundary[np.isin(mesh.boundary_face, faces)])]
+            point = nodes.mean(axis=0)
+            planes.append((point, np.linalg.svd(nodes - point, full_matrices=False)[2][2]))
+    return planes

@@ -242,20 +242,30 @@ def report(run_dir: RunArgument, as_json: JsonOption = False) -> int:
     return 0
 
 
-@app.command(
-    epilog="Example: `codesign export --set angle=15 --set distance=42 --set offset=80 --set length=108 --out d`"
-)
+@app.command(epilog="Example: `codesign export --run runs/a --design recommended --out order`")
 def export(
-    set_: SetOption,
     out_dir: Annotated[Path, typer.Option("--out", help="Folder for the files; created.")],
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.")
+    ] = None,
+    run_dir: Annotated[Path | None, typer.Option("--run", metavar="DIR", help="A design of this run instead.")] = None,
+    selector: Annotated[str, typer.Option("--design", help="Of the run: recommended or a number.")] = "recommended",
     study: StudyOption = DEFAULT_STUDY,
+    organization: Annotated[str, typer.Option(help="For the files' headers; default: the study's title.")] = "",
+    force: Annotated[bool, typer.Option("--force", help="Replace the export of another design.")] = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Manufacturing and simulation files of one design: STL, STEP, URDF with meshes, VTU, JSON."""
+    """What it takes to make and simulate a design: STL, STEP, 3MF, bill of materials, URDF with meshes, VTU, JSON."""
     from codesign.chain.study import load_study
-    from codesign.cli.design import export_design
+    from codesign.cli.design import design_of_run, export_design
 
-    written = export_design(load_study(study), parse_design(set_), out_dir)
+    if (run_dir is None) == (not set_):
+        raise DesignError("export needs either a design by --set or a run by --run")
+    if run_dir is None:
+        loaded, design, chosen = load_study(study), parse_design(set_ or []), ""
+    else:
+        loaded, design, chosen = design_of_run(run_dir, selector)
+    written = export_design(loaded, design, out_dir, chosen=chosen, organization=organization, force=force)
     if as_json:
         print_json({"files": [str(path) for path in written]})
     else:

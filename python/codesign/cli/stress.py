@@ -67,9 +67,16 @@ def stress_document(
         raise StressInputError(str(error)) from None
     solved = time.perf_counter()
     if vtu is not None:
-        from codesign.cli.design import write_vtu
+        from codesign.fem.vtu import StressModel, write_vtu
 
-        write_vtu(mesh, result, vtu)
+        notes = {
+            "part": path.name,
+            "model": "the surface of the file" + (", facets curved back" if smooth else ""),
+            "load_case": f"held: {'; '.join(fix)}; loads [N]: {'; '.join(load)}; selections in units of {scale:g} m",
+            "material": material.name,
+            "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa",
+        }
+        write_vtu(StressModel.of(mesh, result), vtu, notes)
     if png is not None:
         from codesign.report.compute import stress_field
         from codesign.report.figures.solids import write_stress_picture

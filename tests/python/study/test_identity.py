@@ -204,9 +204,9 @@ def test_a_package_beside_the_study_counts_wholly_as_far_as_imported(tmp_path):
 
 def test_libraries_that_only_a_study_uses_count(tmp_path, pretend):
     folder = study_with_helper(tmp_path / "study", 1.0)
-    (folder / "helpers.py").write_text("import meshio\n\n\ndef factor():\n    return 1.0\n")
+    (folder / "helpers.py").write_text("import plotly\n\n\ndef factor():\n    return 1.0\n")
     first = load_study(folder)
-    assert first.identity.libraries["meshio"] == metadata.version("meshio")
-    pretend("meshio", "0.0.1")
+    assert first.identity.libraries["plotly"] == metadata.version("plotly")
+    pretend("plotly", "0.0.1")
     assert load_study(folder).hash != first.hash
     assert fingerprint.engine_hash() == first.identity.sources["engine"]

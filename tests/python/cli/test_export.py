@@ -1,0 +1,156 @@
+"""An export is an order: how many of what, of which material, in which units; never over another design's files."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+import synthetic_run
+from codesign.chain.study import load_study
+from codesign.cli.design import design_of_run, export_design
+from codesign.cli.export_folder import MANIFEST, export_folder
+from codesign.errors import CodesignError, DesignError, ExportError
+from codesign.parts.step import SCHEMAS
+from vtu_files import read_vtu
+
+DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
+PARTS = {"jetpack_bracket": 2, "forearm_support": 1, "forearm_support_mirrored": 1}
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("export") / "order"
+    written = export_design(load_study("ironcub"), DESIGN, folder, chosen="design 7 of a", organization="workshop")
+    assert sorted(written) == sorted(path for path in folder.rglob("*") if path.is_file())
+    assert not list(folder.parent.glob(".*"))
+    return folder
+
+
+def test_the_manifest_says_what_to_make(out: Path) -> None:
+    manifest = json.loads((out / MANIFEST).read_text())
+    assert {part["name"]: part["quantity"] for part in manifest["parts"]} == PARTS
+    assert manifest["design"]["distance"] == {"value": 42, "unit": "mm"}
+    assert manifest["chosen"] == "design 7 of a"
+    assert manifest["units"]["cad/*.stl"] == "mm"
+    assert manifest["files"] == sorted(str(path.relative_to(out)) for path in out.rglob("*") if path.is_file())
+    bracket, forearm, mirrored = manifest["parts"]
+    assert bracket["material"]["name"] == "ergal"
+    assert bracket["density_kg_m3"] == 2800.0
+    assert bracket["load_case"]["supports"] == ["mount"]
+    assert forearm["density_kg_m3"] == mirrored["density_kg_m3"] == 4410.0
+    assert mirrored["mirror_image_of"] == "forearm_support"
+    evaluation = json.loads((out / "evaluation.json").read_text())
+    for part in (bracket, forearm):
+        assert part["mass"] == evaluation["parts"][part["name"]]["mass"]
+        assert part["strength"]["safety_factor"] == evaluation["parts"][part["name"]]["safety_factor"]
+
+
+def test_the_bill_of_materials_is_a_table(out: Path) -> None:
+    with (out / "bom.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["part"]: int(row["quantity"]) for row in rows} == PARTS
+    for row in rows:
+        assert float(row["mass_total_kg"]) == pytest.approx(float(row["mass_each_kg"]) * int(row["quantity"]), rel=1e-5)
+        assert (out / row["step"]).is_file()
+        assert (out / row["stl"]).is_file()
+
+
+def test_the_page_names_materials_loads_and_units(out: Path) -> None:
+    page = (out / "README.md").read_text()
+    for words in (
+        "ergal, 4410 kg/m³",
+        "pressing on face seat",
+        "| distance | 42 | mm |",
+        "| `cad/*.stl` | mm |",
+        "threads",
+    ):
+        assert words in page
+    assert "belong to the author of the study" in page
+
+
+def test_step_files_carry_revision_and_organization(out: Path) -> None:
+    revision = json.loads((out / MANIFEST).read_text())["revision"]
+    for name in (*PARTS, "assembly"):
+        text = (out / "cad" / f"{name}.step").read_text()
+        assert f"PRODUCT_DEFINITION_FORMATION('{revision}'," in text
+        assert "'workshop'" in text
+    assert "AP242" in SCHEMAS
+
+
+def test_stress_files_name_their_model(out: Path) -> None:
+    names = {path.name for path in (out / "stress").iterdir()}
+    assert names == {
+        "jetpack_bracket_simplified_half.vtu",
+        "jetpack_bracket_simplified_whole.vtu",
+        "forearm_support_simplified.vtu",
+    }
+    half, whole = (read_vtu(out / "stress" / f"jetpack_bracket_simplified_{kind}.vtu") for kind in ("half", "whole"))
+    assert half.strings["model"] == "simplified geometry, 1/2 of the symmetric part"
+    assert whole.strings["model"].endswith("and its mirror image")
+    assert half.points[:, 1].min() > -1e-9
+    assert whole.points[:, 1].min() == pytest.approx(-whole.points[:, 1].max(), rel=1e-9)
+    assert len(whole.cells) == 2 * len(half.cells)
+    assert "N pressing on face seat" in half.strings["load_case"]
+
+
+def test_another_design_is_never_overwritten_silently(out: Path, tmp_path: Path) -> None:
+    other = {**DESIGN, "angle": 16}
+    before = (out / MANIFEST).read_bytes()
+    with pytest.raises(ExportError, match=r"holds revision \w+ of study ironcub \(angle = 15, .*--force"):
+        export_design(load_study("ironcub"), other, out)
+    assert (out / MANIFEST).read_bytes() == before
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(ExportError, match="not empty and holds no export"):
+        export_design(load_study("ironcub"), DESIGN, tmp_path)
+    with pytest.raises(ExportError, match="is a file"):
+        export_design(load_study("ironcub"), DESIGN, tmp_path / "notes.txt")
+
+
+def write(folder: Path, revision: str, *files: str, force: bool = False) -> None:
+    with export_folder(folder, revision, force) as work:
+        for file in files:
+            (work / file).parent.mkdir(exist_ok=True)
+            (work / file).write_text(revision)
+        (work / MANIFEST).write_text(json.dumps({"revision": revision, "files": [*files, MANIFEST, "../outside"]}))
+
+
+def contents(folder: Path) -> dict[str, str]:
+    return {str(p.relative_to(folder)): p.read_text() for p in folder.rglob("*") if p.is_file() and p.name != MANIFEST}
+
+
+def test_the_same_design_and_force_replace_an_export(tmp_path: Path) -> None:
+    folder = tmp_path / "order"
+    (tmp_path / "outside").write_text("kept")
+    write(folder, "a", "cad/x.stl", "cad/y.stl")
+    write(folder, "a", "cad/x.stl")
+    assert contents(folder) == {"cad/x.stl": "a"}
+    (folder / "mine.txt").write_text("mine")
+    with pytest.raises(ExportError, match="holds revision a, not this design"):
+        write(folder, "b", "cad/z.stl")
+    write(folder, "b", "cad/z.stl", force=True)
+    assert contents(folder) == {"cad/z.stl": "b", "mine.txt": "mine"}
+    assert (tmp_path / "outside").read_text() == "kept"
+
+
+def test_a_failed_export_leaves_the_earlier_one(tmp_path: Path) -> None:
+    write(tmp_path / "order", "a", "x")
+    with pytest.raises(CodesignError, match="no mesh"), export_folder(tmp_path / "order", "a") as work:
+        (work / "x").write_text("half")
+        raise CodesignError("no mesh")
+    assert contents(tmp_path) == {"order/x": "a"}
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ExportError, match="cannot be written"):
+        write(tmp_path / "file" / "order", "a", "x")
+
+
+def test_a_design_of_a_run(tmp_path: Path) -> None:
+    synthetic_run.write_run(tmp_path / "a", synthetic_run.evaluations(40), study=load_study("ironcub"))
+    study, design, words = design_of_run(tmp_path / "a", "recommended")
+    assert study.name == "ironcub"
+    assert words.endswith("of a (recommended)")
+    number = words.split()[1]
+    assert design_of_run(tmp_path / "a", number)[1] == design
+    for selector, message in (("9999", "no design 9999"), ("front", "one design is needed"), ("knee1", "names no")):
+        with pytest.raises(DesignError, match=message):
+            design_of_run(tmp_path / "a", selector)
