@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import msgspec
 import numpy as np
 
 from codesign import dynamics as dyn
 from codesign.errors import StudyError
+from codesign.names import nearest
 from codesign.study.config import DisturbancesConfig, FlightConfig, StudyConfig, TrajectoryConfig
 from codesign.transforms import pose
 from codesign.units import DEGREE
 
+PER_AXIS = ("wind_n", "gust_deviation_n")  # disturbances with a value for each axis
 TURBINE_COEFFICIENTS = ("K_T", "K_TT", "K_D", "K_DD", "K_TD", "B_U", "B_T", "B_D", "B_UU", "c")
 
 
@@ -22,18 +26,34 @@ def joint_names(flight: FlightConfig) -> list[str]:
 def find_trajectory(config: StudyConfig, name: str) -> TrajectoryConfig:
     """A trajectory of the study; `name@seed`: with its disturbances drawn from another seed.
 
-    Raises: StudyError if there is none of that name, or the seed is not a whole number.
+    `name@seed:key=value,…` (see `disturbed`) sets sizes of the disturbances, too.
+    Raises: StudyError if there is none of that name, or seed or sizes are none.
     """
-    base, at, seed = name.partition("@")
+    base, at, drawn = name.partition("@")
     if base not in config.trajectories:
-        raise StudyError(f"no trajectory {base!r}; this study has {', '.join(config.trajectories)}")
+        raise StudyError(f"no trajectory {base!r}; {nearest(base, config.trajectories)}")
     trajectory = config.trajectories[base]
     if not at:
         return trajectory
+    seed, _, sizes = drawn.partition(":")
     if not seed.isdecimal():
         raise StudyError(f"trajectory {name!r}: the seed after @ must be a whole number")
-    disturbances = msgspec.structs.replace(trajectory.disturbances, seed=int(seed))
+    values = msgspec.to_builtins(trajectory.disturbances) | {"seed": int(seed)}
+    try:
+        for key, value in (size.split("=") for size in sizes.split(",") if size):
+            values[key] = [float(value)] * 3 if key in PER_AXIS else float(value)
+        disturbances = msgspec.convert(values, DisturbancesConfig)
+    except ValueError as error:
+        raise StudyError(f"trajectory {name!r}: {error}") from error
     return msgspec.structs.replace(trajectory, disturbances=disturbances)
+
+
+def disturbed(trajectory: str, seed: int, sizes: Mapping[str, float]) -> str:
+    """Name of a trajectory flown with disturbances of the given sizes, drawn from a seed.
+
+    sizes: by key of `[trajectories.<name>.disturbances]`; a gust's deviation or a wind is the same along all axes.
+    """
+    return f"{trajectory}@{seed}:" + ",".join(f"{key}={float(value)!r}" for key, value in sizes.items())
 
 
 def flight_settings(

@@ -1,21 +1,20 @@
 """Validation: chosen designs and the original on trajectories that the search has not seen, calm and disturbed.
 
-Calm flights are whole evaluations and become rows of the run's store. Disturbed flights repeat them with gusts and with
-errors of mass and thrust that the controller does not know, all drawn from a seed; they are kept in `validation.json`.
+All flights are whole evaluations, run isolated like those of a search, and become rows of the run's store. Disturbed
+flights repeat the calm ones with gusts and with errors of mass and thrust that the controller does not know, all drawn
+from a seed; `validation.json` keeps which flights belong together.
 """
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from codesign.chain.flight import disturbed
 from codesign.errors import DesignError, StoreError, StudyError
 from codesign.files import write_text
+from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.pareto import spread
 from codesign.report.reading import read_report_data, study_of
@@ -43,8 +42,8 @@ def validate(
             apart on the front), or a design's number. The original is always flown.
         trajectories: of the study; by default those of its `[validation]` section.
         seeds: disturbed repetitions of each flight; 0 for none.   disturbance: their size.
-        workers: parallel evaluations and flights; by default one a processor.
-        progress: called with the disturbed flights done and their total number.
+        workers: parallel evaluations; by default as in the study's [execution].
+        progress: called with the flights done and the number of those that the run does not hold yet.
     Raises: StoreError (no run, being written), DesignError (no such design), StudyError (no such trajectory).
     """
     from codesign.followup.reevaluate import revisit
@@ -61,15 +60,18 @@ def validate(
     for name in names:
         if name not in study.config.trajectories:
             raise StudyError(f"no trajectory {name!r}; this study has {', '.join(study.trajectories)}")
-    records = revisit(directory, names, list(chosen.values()), study=study, workers=workers)
-    known = {(tuple(r.evaluation.design.values()), r.trajectory): r.evaluation for r in records}
-    flights = [
-        _calm(role, design, name, known[tuple(study.space.design(design).to_dict().values()), name])
-        for role, design in chosen.items()
-        for name in names
-    ]
     size = disturbance or Disturbance()
-    flights += disturbed_flights(study, chosen, names, seeds, size, workers, progress)
+    cases = _cases(names, seeds, size)
+    told = None if progress is None else lambda state: progress(state.done, state.total)
+    records = revisit(directory, list(cases), list(chosen.values()), study=study, workers=workers, progress=told)
+    flown = {(record.grid, record.trajectory): record.evaluation for record in records}
+    flights = [
+        _flight(role, trajectory, seed, flown[study.space.indices(design), case])
+        for disturbed_too in (False, True)
+        for role, design in chosen.items()
+        for case, (trajectory, seed) in cases.items()
+        if (seed is not None) is disturbed_too
+    ]
     validation = Validation(tuple(flights), size)
     write_text(directory / FILE, validation.to_json())
     return validation
@@ -115,90 +117,25 @@ def _positions(run: ReportData, selector: str) -> dict[str, int]:
     return {f"design {run.entries[i].id}": i for i in positions}
 
 
-def _calm(role: str, design: Mapping[str, float], trajectory: str, evaluation: Any) -> Flight:
-    figures = {k: v for k, v in evaluation.flight.items() if isinstance(v, float)}
+def _flight(role: str, trajectory: str, seed: int | None, evaluation: Evaluation) -> Flight:
+    figures = {key: value for key, value in evaluation.flight.items() if isinstance(value, float)}
     completed = bool(evaluation.objectives)
     reason = None if completed else evaluation.reason
-    return Flight(role, dict(design), trajectory, None, completed, reason, dict(evaluation.objectives), figures)
-
-
-def disturbed_flights(
-    study: Any,
-    designs: Mapping[str, Mapping[str, float]],
-    trajectories: Sequence[str],
-    seeds: int,
-    disturbance: Disturbance,
-    workers: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> list[Flight]:
-    """Every design on every trajectory with seeds 1 … `seeds`; the same disturbances for all designs.
-
-    The native flight releases the interpreter's lock, so threads are enough.
-    """
-    from codesign import dynamics as dyn
-    from codesign.chain.flight import joint_names
-
-    if seeds == 0:
-        return []
-    models = {
-        role: dyn.load_urdf(study.build_robot(design), joints=joint_names(study.configured(design).flight))
-        for role, design in designs.items()
-    }
-    cases = [
-        (role, number, seed) for role in designs for number in range(len(trajectories)) for seed in range(1, seeds + 1)
-    ]
-    done = 0
-
-    def fly(case: tuple[str, int, int]) -> Flight:
-        role, number, seed = case
-        return _disturbed(study, models[role], role, designs[role], trajectories[number], seed, number, disturbance)
-
-    flights = []
-    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
-        for flight in pool.map(fly, cases):
-            flights.append(flight)
-            done += 1
-            if progress is not None:
-                progress(done, len(cases))
-    return flights
-
-
-def _disturbed(
-    study: Any,
-    model: Any,
-    role: str,
-    design: Mapping[str, float],
-    trajectory: str,
-    seed: int,
-    number: int,
-    size: Disturbance,
-) -> Flight:
-    from codesign import dynamics as dyn
-    from codesign.chain.documents import flight_document, objective_families
-    from codesign.chain.flight import flight_settings
-
-    config = study.configured(study.space.design(design))
-    settings = flight_settings(config.flight, config.trajectories[trajectory])
-    settings.disturbances = dyn.Disturbances(
-        gust_deviation=np.full(3, size.gust),
-        gust_time=size.gust_time,
-        mass_deviation=size.mass,
-        thrust_deviation=size.thrust,
-        seed=SEED_STRIDE * number + seed,
-    )
-    log = dyn.simulate_flight(model, settings)
-    completed = log.status == dyn.FlightStatus.completed
-    family = objective_families(log)[config.objectives.family]
-    figures = {
-        k: v for k, v in flight_document(trajectory, log, config.flight.duration_s, 0.0).items() if isinstance(v, float)
-    }
     return Flight(
-        role,
-        dict(design),
-        trajectory,
-        seed,
-        completed,
-        None if completed else f"lost at {log.failure_time:.2f} s: {log.failure_reason}",
-        {name: family[name] for name in config.objectives.minimise} if completed else {},
-        figures,
+        role, dict(evaluation.design), trajectory, seed, completed, reason, dict(evaluation.objectives), figures
     )
+
+
+def _cases(trajectories: Sequence[str], seeds: int, size: Disturbance) -> dict[str, tuple[str, int | None]]:
+    """What every design flies: name for the chain -> trajectory and seed; calm flights first."""
+    sizes = {
+        "gust_deviation_n": size.gust,
+        "gust_time_s": size.gust_time,
+        "mass_deviation": size.mass,
+        "thrust_deviation": size.thrust,
+    }
+    cases: dict[str, tuple[str, int | None]] = {name: (name, None) for name in trajectories}
+    for number, name in enumerate(trajectories):
+        for seed in range(1, seeds + 1):
+            cases[disturbed(name, SEED_STRIDE * number + seed, sizes)] = name, seed
+    return cases

@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 
 import synthetic_run
+from codesign.chain.flight import disturbed, find_trajectory
+from codesign.chain.fly import fly_robot
 from codesign.chain.study import load_study
 from codesign.errors import DesignError, StoreError, StudyError
-from codesign.followup.validation import disturbed_flights, select, validate
+from codesign.followup.validation import select, validate
 from codesign.report.page.validation import strips, validation_tables
 from codesign.report.reading import read_report_data
 from codesign.report.validation import Disturbance, Flight, Validation, load_validation
+from codesign.storage.runs import load_run
 
 STUDY = synthetic_run.Study()
 LIGHT = {"angle": 1, "distance": 48, "offset": 88, "length": 50}
@@ -88,32 +91,25 @@ def test_the_page_shows_means_and_lost_flights(run):
     assert strips(run, validation)["objectives"][0]["calm"] == [{"role": 0, "flight": "new, A", "change": -0.25}]
 
 
-@pytest.fixture(scope="module")
-def flown():
-    designs = {"original": synthetic_run.BASELINE, "light": LIGHT}
-    return disturbed_flights(STUDY, designs, ["trajectory_1"], 2, Disturbance(), workers=2)
+def momentum(trajectory: str) -> float:
+    """Momentum error of a light design's robot, without the parts' analysis."""
+    study = load_study("ironcub")
+    value: float = fly_robot(study, study.build_robot(LIGHT), trajectory=trajectory)["objectives"]["momentum"]
+    return value
 
 
-def test_disturbed_flights_repeat_whatever_the_number_of_workers(flown):
-    again = disturbed_flights(STUDY, {"light": LIGHT}, ["trajectory_1"], 2, Disturbance(), workers=1)
-    assert again == [f for f in flown if f.role == "light"]
+def test_disturbances_differ_by_seed_and_matter():
+    calm, small = momentum("trajectory_1"), {"gust_deviation_n": 1.0, "mass_deviation": 0.002}
+    drawn = [momentum(disturbed("trajectory_1", seed, small)) for seed in (1, 2, 1)]
+    assert len({calm, *drawn}) == 3 and drawn[0] == drawn[2]
+    none = dict.fromkeys(("gust_deviation_n", "mass_deviation", "thrust_deviation"), 0.0)
+    assert momentum(disturbed("trajectory_1", 1, none)) == calm
 
 
-def test_disturbances_differ_by_seed_and_matter(flown):
-    one, two = (f.objectives["momentum"] for f in flown if f.role == "light")
-    calm = disturbed_flights(STUDY, {"light": LIGHT}, ["trajectory_1"], 1, Disturbance(0.0, 1.0, 0.0, 0.0))[0]
-    plain = load_study("ironcub")
-    from codesign.chain.fly import fly_robot
-
-    assert len({one, two, calm.objectives["momentum"]}) == 3
-    undisturbed = fly_robot(plain, plain.build_robot(LIGHT), trajectory="trajectory_1")
-    assert calm.objectives == pytest.approx(undisturbed["objectives"], rel=1e-12)
-
-
-def test_progress_is_told(flown):
-    told = []
-    disturbed_flights(STUDY, {"light": LIGHT}, ["trajectory_1"], 1, Disturbance(), progress=lambda *n: told.append(n))
-    assert told == [(1, 1)]
+@pytest.mark.parametrize("name", ["trajectory_1@x", "trajectory_1@1:gusts=3", "trajectory_1@1:mass_deviation=9", "t@1"])
+def test_wrong_disturbances_are_refused(name):
+    with pytest.raises(StudyError, match="trajectory"):
+        find_trajectory(load_study("ironcub").config, name)
 
 
 @pytest.fixture
@@ -122,13 +118,21 @@ def real_run(tmp_path: Path) -> Path:
     return synthetic_run.write_run(tmp_path / "run", synthetic_run.evaluations(40), study=load_study("ironcub"))
 
 
-def test_validate_flies_chosen_designs_and_keeps_the_flights(real_run):
-    result = validate(real_run, ["recommended"], ["trajectory_1"], seeds=1, workers=1)
+def test_validate_flies_chosen_designs_isolated_and_keeps_the_flights(real_run):
+    told: list[tuple[int, int]] = []
+    result = validate(
+        real_run, ["recommended"], ["trajectory_1"], seeds=2, workers=2, progress=lambda *n: told.append(n)
+    )
     assert result.roles == ("original", "recommended")
-    assert [f.seed for f in result.of("original")] == [None, 1]
+    assert [f.seed for f in result.of("original")] == [None, 1, 2]
     assert all(f.completed for f in result.flights)
+    assert len({f.objectives["momentum"] for f in result.of("original")}) == 3
     assert load_validation(real_run) == result
     assert np.isfinite(list(result.change("recommended", "momentum").values())).all()
+    assert told[-1] == (6, 6)
+    stored = {(r.trajectory, r.worker != "") for r in load_run(real_run).records if r.trajectory}
+    assert len(stored) == 3 and all(worker for _, worker in stored)
+    assert validate(real_run, ["recommended"], ["trajectory_1"], seeds=2, workers=1, progress=None) == result
 
 
 def test_validate_refuses_unknown_trajectories_and_folders_without_a_run(real_run, tmp_path):
