@@ -29,8 +29,8 @@ struct BoxQpSolver::Problem {
 };
 
 BoxQpSolver::BoxQpSolver(int size) {
-  if (size < 1) {
-    throw std::invalid_argument("BoxQpSolver: size is " + std::to_string(size) + ", must be >= 1");
+  if (size < 0) {
+    throw std::invalid_argument("BoxQpSolver: size is " + std::to_string(size) + ", must be >= 0");
   }
   place_.assign(static_cast<std::size_t>(size), Place::kFree);
   wanted_ = place_;
@@ -56,6 +56,10 @@ const BoxQpResult& BoxQpSolver::solve(const Eigen::Ref<const Eigen::MatrixXd>& H
   const Problem p{H, g, lower, upper};
   result_.iterations = 0;
   result_.kkt_residual = 0.0;
+  if (n == 0) {  // of a robot without joints
+    result_.status = QpStatus::kSolved;
+    return result_;
+  }
   if (!prepare(p)) {
     result_.status = QpStatus::kBadData;
     return result_;

@@ -197,7 +197,7 @@ FailureReason Flight::check_limits() {
   attitude_error_ = std::acos(std::clamp(0.5 * (trace - 1.0), -1.0, 1.0));
   if (com_error_ > limits.com_error) return FailureReason::kComError;
   if (attitude_error_ > limits.attitude_error) return FailureReason::kAttitudeError;
-  if (state_.velocity.tail(model_.joint_count()).cwiseAbs().maxCoeff() > limits.joint_speed) {
+  if (state_.velocity.tail(model_.joint_count()).lpNorm<Eigen::Infinity>() > limits.joint_speed) {
     return FailureReason::kJointSpeed;
   }
   return FailureReason::kNotFailed;
@@ -296,8 +296,8 @@ void summarise(const Model& model, const FlightSettings& settings, FlightLog& lo
   if (log.samples == 0) return;
   log.min_thrust = log.thrust.minCoeff();
   log.max_thrust = log.thrust.maxCoeff();
-  log.max_torque = log.torque.cwiseAbs().maxCoeff();
-  log.max_joint_speed = log.velocity.rightCols(model.joint_count()).cwiseAbs().maxCoeff();
+  log.max_torque = log.torque.lpNorm<Eigen::Infinity>();
+  log.max_joint_speed = log.velocity.rightCols(model.joint_count()).lpNorm<Eigen::Infinity>();
   log.min_clearance = log.clearance.minCoeff();
   log.ground_touched = log.min_clearance < 0.0;
   log.total_qp_iterations = log.qp_iterations.cast<long>().sum();

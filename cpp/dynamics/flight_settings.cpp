@@ -37,7 +37,6 @@ void require_size(const std::string& attribute, const Eigen::VectorXd& value, st
 }
 
 void require_unique(const std::string& attribute, const std::vector<std::string>& names) {
-  if (names.empty()) refuse(attribute, "is empty");
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (!seen.insert(name).second) refuse(attribute, "names \"" + name + "\" twice");
@@ -88,6 +87,7 @@ void validate_actuators(const FlightSettings& s) {
 void validate_robot(const FlightSettings& s) {
   require_unique("joints", s.joints);
   validate_actuators(s);
+  if (s.actuators.empty()) refuse("actuators", "is empty");
   const std::size_t joints = s.joints.size();
   const std::size_t jets = s.actuators.size();
   require_size("initial_joints", s.initial_joints, joints, "joint");

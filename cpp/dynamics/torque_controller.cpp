@@ -31,6 +31,7 @@ QpStatus TorqueController::update(const JointSpace& joint_space,
                                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity) {
   const Eigen::MatrixXd& inertia = joint_space.joint_inertia();
   const int n = static_cast<int>(inertia.rows());
+  if (n == 0) return QpStatus::kSolved;  // no joints, no torques
   velocity_error_ = joint_velocity - commanded_velocity;
   solution_ = -proportional_ * velocity_error_ - integral_ * error_integral_;
   error_integral_ += step_ * velocity_error_;

@@ -13,7 +13,7 @@ import numpy as np
 from codesign import _core
 from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families
-from codesign.chain.flight import find_trajectory, flight_settings, joint_names
+from codesign.chain.flight import find_trajectory, flight_settings, joint_names, refusals
 from codesign.chain.judge import judge
 from codesign.chain.provenance import provenance
 from codesign.errors import CodesignError
@@ -83,7 +83,8 @@ def _evaluate(
     robot = _assemble(study, config, parts, masses)
     cases = {name: part_case(part, stress[name]) for name, part in parts.items() if name not in known}
     built = time.perf_counter()
-    result = _core.evaluate(list(cases.values()), robot.to_text(), settings)
+    with refusals(study.path):
+        result = _core.evaluate(list(cases.values()), robot.to_text(), settings)
     documents: dict[str, dict[str, Any]] = {}
     for name in parts:
         if name in known:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 
 import msgspec
 import numpy as np
 
 from codesign import dynamics as dyn
-from codesign.errors import StudyError
+from codesign.errors import CodesignError, StudyError
 from codesign.names import nearest
 from codesign.study.config import DisturbancesConfig, FlightConfig, StudyConfig, TrajectoryConfig
 from codesign.transforms import pose
@@ -16,6 +18,17 @@ from codesign.units import DEGREE
 
 PER_AXIS = ("wind_n", "gust_deviation_n")  # disturbances with a value for each axis
 TURBINE_COEFFICIENTS = ("K_T", "K_TT", "K_D", "K_DD", "K_TD", "B_U", "B_T", "B_D", "B_UU", "c")
+
+
+@contextlib.contextmanager
+def refusals(study: Path) -> Iterator[None]:
+    """Turns what the native code refuses of a study's values, as a last resort, into a StudyError that names it."""
+    try:
+        yield
+    except CodesignError:
+        raise
+    except ValueError as error:
+        raise StudyError(f"{study}: {error}") from error
 
 
 def joint_names(flight: FlightConfig) -> list[str]:
@@ -111,7 +124,7 @@ def _per_joint(flight: FlightConfig, attribute: str) -> np.ndarray:
 def _set_initial_state(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
     initial = flight.initial_state
     settings.base_pose = pose(initial.base_position_m, [angle * DEGREE for angle in initial.base_rpy_deg])
-    settings.initial_joints = np.concatenate([group.initial_rad for group in flight.joint_groups])
+    settings.initial_joints = np.array([angle for group in flight.joint_groups for angle in group.initial_rad])
     settings.initial_thrusts = np.broadcast_to(initial.thrust_n, len(flight.jets.frames))
     settings.initial_free_fall = initial.free_fall_first_step
 
@@ -205,7 +218,7 @@ def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
         regularisation=weights.regularization,
         torque=weights.torque,
     )
-    ranges = np.array([r for group in flight.joint_groups for r in group.ranges_deg]) * DEGREE
+    ranges = np.array([r for group in flight.joint_groups for r in group.ranges_deg]).reshape(-1, 2) * DEGREE
     settings.limits = dyn.Limits(
         joint_lower=ranges[:, 0],
         joint_upper=ranges[:, 1],

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families, objective_parts
-from codesign.chain.flight import find_trajectory, flight_settings, joint_names
+from codesign.chain.flight import find_trajectory, flight_settings, joint_names, refusals
 from codesign.chain.judge import FLIGHT_MISSED, loss
 from codesign.chain.provenance import provenance
 
@@ -36,7 +36,8 @@ def fly_robot(
     start = time.perf_counter()
     model = dyn.load_urdf(robot, joints=joint_names(config.flight), as_published=as_published)
     loaded = time.perf_counter()
-    log = dyn.simulate_flight(model, settings)
+    with refusals(study.path):
+        log = dyn.simulate_flight(model, settings)
     end = time.perf_counter()
     completed = log.completed
     document = flight_document(trajectory or config.flight.trajectory, log, config.flight.duration_s, end - loaded)

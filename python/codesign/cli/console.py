@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import json
 import sys
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from codesign.problem.design_space import value_text
+from codesign.problem.evaluation import least_infeasible
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from codesign.parts.load_case import Confirmation
     from codesign.problem.evaluation import Evaluation
     from codesign.storage.runs import Run
 
+MOST_ROWS = 20  # of a front
 # What is printed holds paths and texts of users: square brackets and colons in them are no markup.
 out = Console(markup=False, emoji=False)
 err = Console(markup=False, emoji=False, stderr=True)
@@ -37,7 +42,7 @@ def shown(value: Any, digits: int = 6) -> str:
 def print_evaluation(evaluation: Evaluation) -> None:
     """Text summary of one evaluation."""
     colour = {"feasible": "green", "infeasible": "yellow", "failed": "red"}[evaluation.status]
-    design = "  ".join(f"{name}={value}" for name, value in evaluation.design.items())
+    design = "  ".join(f"{name}={value_text(value)}" for name, value in evaluation.design.items())
     out.print(Text.assemble((evaluation.status, f"bold {colour}"), f"  {design}"))
     if evaluation.reason:
         out.print(evaluation.reason)
@@ -74,29 +79,55 @@ def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
 
 
 def print_run(run: Run, as_json: bool) -> int:
-    """Summary of a run and its front; exit code 1 if nothing is feasible."""
+    """Summary of a run and its front, or of what comes nearest to one; exit code 1 if nothing is feasible."""
     from codesign.storage.runs import summarize
 
     summary = summarize(run)
     front = [record.evaluation for record in run.front]
     if as_json:
-        print_json(summary | {"front": [evaluation.to_dict() for evaluation in front]})
-    else:
-        counts = "  ".join(f"{status} {count}" for status, count in summary["statuses"].items())
-        told = f": {summary['designs']} designs ({counts}) in {summary['seconds']:.1f} s"
-        out.print(Text.assemble((str(run.out), "bold"), told))
-        table = Table(title=f"Pareto front, {len(front)} designs", title_justify="left")
-        rows = sorted(front, key=lambda evaluation: list(evaluation.objectives.values()))
-        for evaluation in rows[:20]:
-            if not table.columns:
-                for name in (*evaluation.design, *evaluation.objectives, "safety_factor"):
-                    table.add_column(name, justify="right")
-            values = [*evaluation.design.values(), *evaluation.objectives.values()]
-            table.add_row(*(f"{value:.5g}" for value in (*values, evaluation.constraints.get("safety_factor", 0.0))))
-        out.print(table)
-        if len(rows) > 20:
-            out.print(f"… and {len(rows) - 20} more")
-    return 0 if front else 1
+        closest = None if front else least_infeasible(run.evaluations)
+        print_json(
+            summary
+            | {"front": [evaluation.to_dict() for evaluation in front]}
+            | ({} if front else {"least_infeasible": None if closest is None else closest.to_dict()})
+        )
+        return 0 if front else 1
+    counts = "  ".join(f"{status} {count}" for status, count in summary["statuses"].items())
+    told = f": {summary['designs']} designs ({counts}) in {summary['seconds']:.1f} s"
+    out.print(Text.assemble((str(run.out), "bold"), told))
+    if front:
+        _print_front(front)
+        return 0
+    _print_nothing_feasible(run.evaluations)
+    return 1
+
+
+def _print_front(front: Sequence[Evaluation]) -> None:
+    table = Table(title=f"Pareto front, {len(front)} designs", title_justify="left")
+    rows = sorted(front, key=lambda evaluation: list(evaluation.objectives.values()))
+    for name in (*rows[0].design, *rows[0].objectives, "safety_factor"):
+        table.add_column(name, justify="right")
+    for evaluation in rows[:MOST_ROWS]:
+        numbers = (*evaluation.objectives.values(), evaluation.constraints.get("safety_factor"))
+        table.add_row(*map(value_text, evaluation.design.values()), *(shown(number, 5) for number in numbers))
+    out.print(table)
+    if len(rows) > MOST_ROWS:
+        out.print(f"… and {len(rows) - MOST_ROWS} more")
+
+
+def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:
+    """The least infeasible design and what it violates; if all failed, the commonest reason."""
+    closest = least_infeasible(evaluations)
+    if closest is not None:
+        design = "  ".join(f"{name}={value_text(value)}" for name, value in closest.design.items())
+        out.print(Text.assemble(("nothing is feasible", "bold yellow"), f"; the least infeasible design: {design}"))
+        out.print(closest.reason or "", soft_wrap=True)
+        for name, violation in closest.violations.items():
+            if violation > 0.0:
+                out.print(f"{name} violated by {violation:.4g} of its limit")
+    elif reasons := Counter(evaluation.reason for evaluation in evaluations if evaluation.reason):
+        reason, count = reasons.most_common(1)[0]
+        out.print(f"all {len(evaluations)} designs failed, {count} of them: {reason}", soft_wrap=True)
 
 
 def print_stress(document: dict[str, Any]) -> None:

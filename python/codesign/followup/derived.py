@@ -10,7 +10,7 @@ from typing import Any
 from codesign.errors import DesignError
 from codesign.execution.pool import StudyRef
 from codesign.execution.worker import load
-from codesign.problem.design_space import DesignSpace, Variable
+from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 from codesign.problem.protocols import ExecutionDefaults, OptimizerDefaults, Problem
@@ -93,9 +93,7 @@ class CoarseStudy(DerivedStudy):
     def space(self) -> DesignSpace:
         """The coarser grid."""
         variables = zip(self.study.space.variables, self.strides, strict=True)
-        return DesignSpace(
-            tuple(Variable(v.name, v.minimum, v.maximum, v.step * stride, v.unit) for v, stride in variables)
-        )
+        return DesignSpace(tuple(variable.every(stride) for variable, stride in variables))
 
 
 def coarse(study: Problem, counts: Sequence[int]) -> CoarseStudy:

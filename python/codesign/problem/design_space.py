@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from decimal import Decimal
 
 import numpy as np
 
 from codesign.errors import DesignError
+from codesign.names import nearest
 
 GRID_TOLERANCE = 1e-9  # of a step: how far a value may lie from its grid point (round-off of user input)
+
+
+def value_text(value: float) -> str:
+    """A design value as people write it, exact: `30` for 30.0, `1.2`."""
+    return str(int(value)) if float(value).is_integer() else repr(float(value))
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,10 +35,14 @@ class Variable:
         return round((self.maximum - self.minimum) / self.step) + 1
 
     def value(self, index: int) -> float:
-        """Grid value number `index`; raises DesignError outside 0 … levels - 1."""
+        """Grid value number `index`, as decimal as minimum and step; raises DesignError outside 0 … levels - 1."""
         if not 0 <= index < self.levels:
             raise DesignError(f"{self.name}: grid index {index} outside 0 … {self.levels - 1}")
-        return self.minimum + index * self.step
+        return float(Decimal(repr(self.minimum)) + index * Decimal(repr(self.step)))
+
+    def every(self, stride: int) -> Variable:
+        """The variable with every `stride`-th value only."""
+        return replace(self, step=float(stride * Decimal(repr(self.step))))
 
     def index(self, value: float) -> int:
         """Grid index of `value`; raises DesignError if it is out of bounds or off the grid (never rounded silently)."""
@@ -40,13 +51,16 @@ class Variable:
             raise DesignError(f"{self.name}: {value!r} is not a finite number")
         position = (value - self.minimum) / self.step
         if not -GRID_TOLERANCE <= position <= self.levels - 1 + GRID_TOLERANCE:
-            raise DesignError(f"{self.name} = {value:g}{unit}: outside {self.minimum:g} … {self.maximum:g}{unit}")
+            raise DesignError(
+                f"{self.name} = {value_text(value)}{unit}: outside "
+                f"{value_text(self.minimum)} … {value_text(self.maximum)}{unit}"
+            )
         index = round(position)
         if abs(position - index) > GRID_TOLERANCE:
             below, above = self.value(int(np.floor(position))), self.value(int(np.ceil(position)))
             raise DesignError(
-                f"{self.name} = {value:g}{unit}: off the grid of step {self.step:g}{unit}; "
-                f"nearest values {below:g} and {above:g}"
+                f"{self.name} = {value_text(value)}{unit}: off the grid of step {value_text(self.step)}{unit}; "
+                f"nearest values {value_text(below)} and {value_text(above)}"
             )
         return index
 
@@ -75,7 +89,7 @@ class Design(Mapping[str, float]):
         return {n: int(v) if float(v).is_integer() else v for n, v in self.items()}
 
     def __str__(self) -> str:
-        return ", ".join(f"{n}={v:g}" for n, v in self.items())
+        return ", ".join(f"{n}={value_text(v)}" for n, v in self.items())
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +120,7 @@ class DesignSpace:
         if isinstance(theta, Mapping):
             unknown = [name for name in theta if name not in self.names]
             if unknown:
-                raise DesignError(f"unknown design variable {unknown[0]!r}; this study has {', '.join(self.names)}")
+                raise DesignError(f"unknown design variable {unknown[0]!r}; {nearest(unknown[0], self.names)}")
             missing = [name for name in self.names if name not in theta]
             if missing:
                 raise DesignError(f"no value for design variable {missing[0]!r}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -58,3 +59,9 @@ class Evaluation:
     def from_json(cls, text: str) -> Evaluation:
         """Inverse of `to_json`."""
         return cls.from_dict(json.loads(text))
+
+
+def least_infeasible(evaluations: Iterable[Evaluation]) -> Evaluation | None:
+    """Of the infeasible designs the one that violates least, the first of several; None if there is none."""
+    infeasible = [evaluation for evaluation in evaluations if evaluation.status == "infeasible"]
+    return min(infeasible, key=lambda evaluation: evaluation.total_violation, default=None)

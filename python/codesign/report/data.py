@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from codesign.problem.design_space import DesignSpace, Variable
-from codesign.problem.evaluation import Evaluation
+from codesign.problem.evaluation import Evaluation, least_infeasible
 from codesign.problem.pareto import non_dominated
 from codesign.problem.quantities import Quantity, words
 from codesign.report.objections import Objection, objections
@@ -149,6 +149,14 @@ class ReportData:
     def recommended(self) -> int | None:
         """Position of the design to build, None if nothing should be: the knee of the choices."""
         return self.ranking[0][0] if self.ranking else None
+
+    @cached_property
+    def least_infeasible(self) -> int | None:
+        """Position of the infeasible design that violates least, where no design is feasible."""
+        if self.feasible.any():
+            return None
+        closest = least_infeasible(e.evaluation for e in self.entries)
+        return None if closest is None else self.find(closest)
 
     @cached_property
     def best(self) -> dict[str, int]:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
 
 FOLDER = "details"
@@ -66,7 +67,7 @@ class Detail:
 
 def detail_key(evaluation: Evaluation) -> str:
     """Name of a design's detail file: its values in order, `15-42-80-108`."""
-    return "-".join(f"{value:g}" for value in evaluation.design.values())
+    return "-".join(value_text(value) for value in evaluation.design.values())
 
 
 def save_detail(folder: Path, detail: Detail) -> Path:

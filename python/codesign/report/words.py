@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from codesign.report.data import ReportData
 
 EQUAL = 5e-4  # relative change that is called none
@@ -50,6 +52,9 @@ def searched(run: ReportData) -> str:
     feasible = run.counts["feasible"]
     if not feasible:
         outcome = "None of them meets every constraint"
+        if run.least_infeasible is not None:
+            closest = run.entries[run.least_infeasible]
+            outcome += f"; design {closest.id} comes closest: {closest.evaluation.reason}"
     elif total == 1:
         outcome = "It meets every constraint"
     else:
@@ -83,7 +88,9 @@ def gained(run: ReportData) -> str:
         f"{o.label.lower()} by {100 * -g:.1f}\u202f%" for o, g in zip(run.objectives, gain, strict=True) if g < -EQUAL
     ]
     higher = [
-        f"{o.label.lower()} by {100 * g:.1f}\u202f%" for o, g in zip(run.objectives, gain, strict=True) if g > EQUAL
+        f"{o.label.lower()} by {100 * g:.1f}\u202f%"
+        for o, g in zip(run.objectives, gain, strict=True)
+        if EQUAL < g < np.inf
     ]
     if run.entries[run.recommended].evaluation.design == run.baseline.design if run.baseline else False:
         return "The original design is itself the best compromise found."

@@ -21,9 +21,9 @@ Problem = tuple[str, str]
 
 def reference_problems(config: StudyConfig, part_classes: Mapping[str, type[Part]]) -> Iterator[Problem]:
     """Everything outside of [flight] that can be judged from the file and the part classes alone."""
-    yield from _variable_problems(config)
     if not config.parts:
         yield "parts", "a study needs at least one part"
+    yield from _variable_problems(config)
     if twice := repeated(part.name for part in config.parts):
         yield "parts", f"two parts have the name {twice!r}"
     for part in config.parts:

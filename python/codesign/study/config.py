@@ -229,7 +229,7 @@ class FlightConfig(Section, frozen=True, kw_only=True):
     duration_s: Positive
     jet_model: Literal["integrator", "lag", "turbine"] = "integrator"
     initial_state: InitialStateConfig
-    joint_groups: list[JointGroupConfig]
+    joint_groups: list[JointGroupConfig] = []
     jets: JetsConfig
     command_speeds: CommandSpeedsConfig
     references: ReferencesConfig

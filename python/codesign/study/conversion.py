@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -105,9 +106,14 @@ def _written(steps: Iterable[str | int]) -> str:
     return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).lstrip(".")
 
 
+@functools.cache
+def _whole() -> kinds.Type:
+    return kinds.type_info(StudyConfig)
+
+
 def _kind(steps: Iterable[str | int]) -> kinds.Type:
     """The type that the configuration has at a place."""
-    kind: kinds.Type = kinds.type_info(StudyConfig)
+    kind: kinds.Type = _whole()
     for step in steps:
         kind = _without_none(kind)
         if isinstance(kind, kinds.StructType):

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from codesign.errors import UrdfError
+from codesign.robot.clearance import InterferenceSettings, link_pieces
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, repeated, unknown
 from codesign.study.config import FlightConfig, StudyConfig
@@ -92,6 +94,8 @@ def _per_jet_problems(flight: FlightConfig) -> Iterator[Problem]:
 
 
 def _trajectory_problems(config: StudyConfig) -> Iterator[Problem]:
+    if not config.trajectories:
+        yield "trajectories", "a study needs at least one trajectory"
     yield from unknown("flight.trajectory", "trajectory", config.flight.trajectory, config.trajectories)
     for name in config.validation.trajectories:
         yield from unknown("validation.trajectories", "trajectory", name, config.trajectories)
@@ -115,10 +119,23 @@ def robot_problems(config: StudyConfig, robot: RobotDescription) -> Iterator[Pro
     for frame in flight.ground.frames:
         yield from unknown("flight.ground.frames", "link", frame, robot.link_names)
     if config.interference is not None:
-        for link in config.interference.bodies:
-            yield from unknown("interference.bodies", "link", link, robot.link_names)
-        for pair in config.interference.ignore:
-            for link in pair:
-                yield from unknown("interference.ignore", "link", link, robot.link_names)
-        for jet in config.interference.plumes.jets:
-            yield from unknown("interference.plumes.jets", "link", jet, robot.link_names)
+        yield from _interference_problems(config, config.interference, robot)
+
+
+def _interference_problems(
+    config: StudyConfig, measured: InterferenceSettings, robot: RobotDescription
+) -> Iterator[Problem]:
+    for jet in measured.plumes.jets:
+        yield from unknown("interference.plumes.jets", "link", jet, robot.link_names)
+    placed = {place.link: () for part in config.parts for place in part.placements}
+    try:
+        shapes = link_pieces(robot, placed)
+    except UrdfError as error:
+        yield "interference", str(error)
+        return
+    for key, links in (
+        ("interference.bodies", measured.bodies),
+        ("interference.ignore", [link for pair in measured.ignore for link in pair]),
+    ):
+        for link in links:
+            yield from unknown(key, "link with a shape", link, shapes)

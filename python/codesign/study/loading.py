@@ -50,7 +50,17 @@ def load(source: str | Path, kind: type[AnyStudy]) -> AnyStudy:
 
 @functools.lru_cache(maxsize=8)
 def _load(source: str, path: Path, kind: Callable[..., StudyData], _content: str) -> StudyData:
-    raw = _parse(path)
+    return study_from(_parse(path), path, kind, source)
+
+
+def study_from(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source: str = "") -> StudyData:
+    """A checked study of a parsed study.toml.
+
+    Args:
+        raw: the document; path: of its file, beside which robot and modules lie; kind: class of the study.
+        source: what workers load it from; by default its path.
+    Raises: StudyError with file, key, value and reason.
+    """
     config = convert(raw, path)
     part_classes = {part.name: _part_class(part, path) for part in config.parts}
     functions = {name: _function(name, path) for name in own_functions(config)}

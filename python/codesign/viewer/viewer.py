@@ -23,6 +23,7 @@ from trimesh.visual.material import PBRMaterial
 
 from codesign.errors import CodesignError, ExecutionError
 from codesign.files import write_text
+from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
 from codesign.report.compute import compute_detail
 from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
@@ -119,7 +120,7 @@ def _choices(
         raise CodesignError("the study cannot be loaded, so its robot cannot be shown")
     if design is not None:
         values = study.space.design(design).to_dict()
-        choices = [Choice(", ".join(f"{k} {v:g}" for k, v in values.items()), values), *choices]
+        choices = [Choice(", ".join(f"{k} {value_text(v)}" for k, v in values.items()), values), *choices]
     if study.baseline is not None and all(c.design != study.baseline.to_dict() for c in choices):
         choices.append(Choice("original", study.baseline.to_dict()))
     if not choices:
@@ -427,7 +428,7 @@ class Viewer:
         """What is known of the design, as Markdown."""
         evaluation = self._detail_shown.evaluation
         lines = [f"**{evaluation.status}**" + (f": {evaluation.reason}" if evaluation.reason else "")]
-        lines += [f"{key}: **{value:g}**" for key, value in evaluation.design.items()]
+        lines += [f"{key}: **{value_text(value)}**" for key, value in evaluation.design.items()]
         original = next((c.evaluation for c in self._choices if c.name == "original"), None)
         for key, value in evaluation.objectives.items():
             before = original.objectives.get(key) if original is not None else None

@@ -176,7 +176,10 @@ TEST(BoxQp, SaysWhyItDidNotSolve) {
   EXPECT_EQ(status(H, g, Eigen::Vector2d(nan, 0.0)), QpStatus::kBadData);
   EXPECT_EQ(status(H, g, lower), QpStatus::kSolved);
   EXPECT_THROW(solver.solve(H, Eigen::Vector3d::Zero(), lower, upper), std::invalid_argument);
-  EXPECT_THROW(BoxQpSolver(0), std::invalid_argument);
+  EXPECT_THROW(BoxQpSolver(-1), std::invalid_argument);
+  BoxQpSolver empty(0);
+  const Eigen::VectorXd nothing;
+  EXPECT_EQ(empty.solve(Eigen::MatrixXd(), nothing, nothing, nothing).status, QpStatus::kSolved);
 }
 
 }  // namespace

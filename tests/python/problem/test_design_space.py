@@ -1,9 +1,10 @@
 import math
+from decimal import Decimal
 
 import pytest
 
 from codesign.errors import DesignError
-from codesign.problem.design_space import DesignSpace, Variable
+from codesign.problem.design_space import DesignSpace, Variable, value_text
 
 SPACE = DesignSpace((Variable("angle", 1, 79, 1, "deg"), Variable("distance", 40, 100, 2, "mm")))
 
@@ -40,3 +41,29 @@ def test_bad_designs_are_refused_not_rounded(theta, message):
 
 def test_whole_numbers_print_as_integers():
     assert SPACE.design([15, 42]).to_dict() == {"angle": 15, "distance": 42}
+
+
+@pytest.mark.parametrize(
+    ("minimum", "step", "levels"), [(0.1, 0.1, 60), (-0.3, 0.05, 40), (1e-3, 1e-4, 30), (2, 0.25, 9)]
+)
+def test_grid_values_are_the_decimals_that_people_write(minimum, step, levels):
+    maximum = float(Decimal(str(minimum)) + (levels - 1) * Decimal(str(step)))
+    variable = Variable("x", minimum, maximum, step)
+    decimals = -Decimal(str(step)).as_tuple().exponent
+    for index in range(levels):
+        value = variable.value(index)
+        assert value == float(f"{Decimal(str(minimum)) + index * Decimal(str(step)):.{decimals}f}")
+        assert variable.index(float(value_text(value))) == index
+        assert len(value_text(value).partition(".")[2]) <= decimals
+    assert str(DesignSpace((variable,)).from_indices([0])) == f"x={value_text(minimum)}"
+    assert Variable("x", 0.1, 2.5, 0.1).every(3).value(4) == 1.3
+
+
+def test_values_are_shown_exactly():
+    assert [value_text(x) for x in (30.0, 1.2, 120.0625, 1234.5678, -0.5)] == [
+        "30",
+        "1.2",
+        "120.0625",
+        "1234.5678",
+        "-0.5",
+    ]

@@ -47,6 +47,21 @@ def test_a_robot_without_ground_contacts_flies_on_the_command_line(tmp_path, cap
     assert float(rows["max_thrust"]) > 0.0
 
 
+def test_a_robot_without_moving_joints_flies(tmp_path):
+    study = edited(tmp_path / "study")
+    text = study.path.read_text()
+    start, end = text.index("[[flight.joint_groups]]"), text.index("[flight.jets]")
+    study.path.write_text(text[:start] + text[end:])
+    rigid = load_study(study.path)
+    document = fly_robot(rigid, study.path.parent / "robot.urdf")
+    assert document["status"] == "completed"
+    assert document["objectives"]["joint_velocity"] == 0.0
+    assert document["flight"]["max_torque"] == 0.0
+    thrust = document["objectives"]["thrust"]  # four equal jets lift the robot: the weight is what they push with
+    model = dyn.load_urdf(study.path.parent / "robot.urdf", joints=[])
+    assert thrust == pytest.approx(9.81 * model.total_mass, rel=0.05)
+
+
 def test_a_flight_that_is_lost_at_once_is_a_json_document(tmp_path):
     study = edited(tmp_path / "study", ("com_error_m = 2.0", "com_error_m = 1e-9"))
     document = fly_robot(study, study.path.parent / "robot.urdf")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codesign.chain.flight import find_trajectory
+from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.quantities import words
 from codesign.report.details import FlightHistory, StressField
@@ -101,7 +102,9 @@ def parts_on_robot(data: FigureData) -> Any:
         bodies, near = close_up(robot_scene(data.study, evaluation.design), joints, base)
         view = view or fitting_view(near, *facing(base), aspect=0.95)
         _picture(axes, render(bodies, view, 760, 800))
-        values = ", ".join(f"{data.run.label(v).lower()} {evaluation.design[v.name]:g}" for v in data.run.variables)
+        values = ", ".join(
+            f"{data.run.label(v).lower()} {value_text(evaluation.design[v.name])}" for v in data.run.variables
+        )
         axes.set_title(words(name), loc="center")
         axes.text(0.5, -0.02, textwrap.fill(values, 48), transform=axes.transAxes, ha="center", va="top", fontsize=7)
     return figure
@@ -130,7 +133,7 @@ def posture(data: FigureData, evaluation: Evaluation) -> tuple[Array, Matrix]:
     detail = data.detail(evaluation)
     if detail is None or detail.flight is None:
         groups = data.study.config.flight.joint_groups
-        return np.concatenate([np.asarray(group.initial_rad, dtype=float) for group in groups]), np.eye(4)
+        return np.array([angle for group in groups for angle in group.initial_rad], dtype=float), np.eye(4)
     k = sample_at(detail.flight, hover_time(data.study, detail.flight))
     return detail.flight["joint_positions"][k], base_pose(detail.flight, k)
 

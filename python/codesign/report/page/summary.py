@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from html import escape
 
+from codesign.problem.design_space import value_text
 from codesign.report import recommendation, words
 from codesign.report.data import ReportData
 from codesign.report.evidence import Evidence, evidence, validated
@@ -72,10 +73,15 @@ def _build(run: ReportData) -> str:
     entry = run.entries[run.recommended]
     design = entry.evaluation.design
     values = "".join(
-        f"<div><dt>{escape(run.label(v))}</dt><dd>{design[v.name]:g}{_unit(v.unit)}</dd></div>" for v in run.variables
+        f"<div><dt>{escape(run.label(v))}</dt><dd>{value_text(design[v.name])}{_unit(v.unit)}</dd></div>"
+        for v in run.variables
     )
     command = " ".join(
-        [run.export_command, *(f"--set {v.name}={design[v.name]:g}" for v in run.variables), f"--out design-{entry.id}"]
+        [
+            run.export_command,
+            *(f"--set {v.name}={value_text(design[v.name])}" for v in run.variables),
+            f"--out design-{entry.id}",
+        ]
     )
     against = recommendation.reservations(run)
     title = f"Candidate: design {entry.id}" if against else f"Build design {entry.id}"

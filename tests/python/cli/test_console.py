@@ -1,0 +1,50 @@
+"""What the terminal says of a run."""
+
+import json
+
+import pytest
+
+from codesign.cli import console
+from codesign.problem.evaluation import Evaluation
+from codesign.search.optimization import evaluate_designs
+from codesign.storage.runs import Run
+from fake_study import study
+
+
+def evaluation(reach: float, **violations: float) -> Evaluation:
+    reason = "; ".join(f"{name} below 10" for name, value in violations.items() if value)
+    return Evaluation({"reach": reach}, "infeasible", reason, {"mass": 1.0}, violations=violations)
+
+
+@pytest.fixture
+def run(tmp_path) -> Run:
+    """A run of one design, whose evaluations the tests replace."""
+    return evaluate_designs(study(levels=[3]), [{"a": 0.5}], out=tmp_path / "run", cache=None, workers=1)
+
+
+def replaced(run: Run, evaluations: list[Evaluation], monkeypatch: pytest.MonkeyPatch) -> Run:
+    monkeypatch.setattr(Run, "evaluations", property(lambda _: evaluations))
+    monkeypatch.setattr(Run, "front", property(lambda _: ()))
+    return run
+
+
+def test_a_run_without_a_feasible_design_names_the_least_infeasible(run, monkeypatch, capsys):
+    designs = [
+        evaluation(1.2, safety_factor=0.5, mass=0.0),
+        evaluation(1.3, safety_factor=0.25),
+        evaluation(1.4, mass=0.9),
+    ]
+    assert console.print_run(replaced(run, designs, monkeypatch), as_json=False) == 1
+    told = capsys.readouterr().out
+    assert "nothing is feasible; the least infeasible design: reach=1.3" in told
+    assert "safety_factor below 10" in told and "safety_factor violated by 0.25" in told
+    assert console.print_run(run, as_json=True) == 1
+    assert json.loads(capsys.readouterr().out)["least_infeasible"]["design"] == {"reach": 1.3}
+
+
+def test_a_run_whose_designs_all_failed_says_why(run, monkeypatch, capsys):
+    designs = [Evaluation.failure({"reach": k}, "MeshError: no mesh" if k else "time limit") for k in range(3)]
+    assert console.print_run(replaced(run, designs, monkeypatch), as_json=False) == 1
+    assert "all 3 designs failed, 2 of them: MeshError: no mesh" in capsys.readouterr().out
+    assert console.print_run(run, as_json=True) == 1
+    assert json.loads(capsys.readouterr().out)["least_infeasible"] is None
