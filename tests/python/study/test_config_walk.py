@@ -117,7 +117,10 @@ def complete(raw: dict[str, Any]) -> None:
     raw["flight"] |= {"jet_model": "turbine", "duration_s": 0.08}
     raw["flight"]["initial_state"] |= {"base_rpy_deg": [0.0, 0.0, 0.0], "free_fall_first_step": True}
     raw["flight"]["joint_groups"][0]["range_scale"] = 1.0
-    raw["flight"]["jets"]["symmetric_pairs"] = [["front_jet", "rear_jet"]]
+    raw["flight"]["jets"] |= {
+        "symmetric_pairs": [["front_jet", "rear_jet"]], "min_thrust_n": 5.0, "axes": 4 * [[0.0, 0.0, -1.0]],
+        "reaction_n_m_per_n": 0.01, "lag_s": [0.05, 0.05, 0.06, 0.06],
+    }  # fmt: skip
     raw["flight"]["command_speeds"] |= {"lateral_m_s": 0.3, "roll_deg_s": 18.75}
     raw["flight"]["ground"]["height_m"] = 0.0
     raw["objectives"]["maximise"] = ["parts.strut.safety_factor"]
@@ -174,7 +177,7 @@ def with_value(raw: dict[str, Any], place: Place, value: Any) -> dict[str, Any]:
 def wrong_values(kind: kinds.Type, old: Any) -> list[Any]:
     """What people write there by mistake."""
     if isinstance(kind, kinds.FloatType | kinds.IntType):
-        return ["text", NAN, INFINITY, -INFINITY, 0, -1, 10**400]
+        return ["text", NAN, INFINITY, -INFINITY, 0, -1, 10**400, [], [NAN], [1.0]]
     if isinstance(kind, kinds.BoolType):
         return ["true", 1, NAN]
     if isinstance(kind, kinds.StrType | kinds.LiteralType):
