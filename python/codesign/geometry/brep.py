@@ -160,7 +160,8 @@ def _extrusion(extrusion: Extrusion) -> Brep:
     for wire, _ in wires[1:]:
         maker.Add(TopoDS.Wire(wire.Reversed()))
     height = extrusion.end - extrusion.start
-    prism = BRepPrimAPI_MakePrism(maker.Face(), gp_Vec(*(height * c for c in base.z)))
+    # With a copy, so that the end is no located twin of the start: STEP files had no name for the ends of moved cylinders.
+    prism = BRepPrimAPI_MakePrism(maker.Face(), gp_Vec(*(height * c for c in base.z)), True)
     named = [(prism.FirstShape(), extrusion.start_face), (prism.LastShape(), extrusion.end_face)]
     for loop, (_, edges) in zip(extrusion.profile.loops, wires, strict=True):
         for edge, swept in zip(loop.edges, edges, strict=True):

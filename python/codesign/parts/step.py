@@ -1,13 +1,9 @@
-"""STEP files (ISO 10303-21, mm): exact solids with named faces, alone or placed in an assembly.
-
-OpenCASCADE reports on C's stdout whatever it does; its printers are taken out while it works.
-"""
+"""STEP files (ISO 10303-21, mm): exact solids with named faces, alone or placed in an assembly."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,7 +11,6 @@ from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.gp import gp_Trsf
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
-from OCP.Message import Message
 from OCP.StepBasic import StepBasic_ProductDefinitionFormation
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
 from OCP.STEPConstruct import STEPConstruct
@@ -33,6 +28,7 @@ from codesign import __version__
 from codesign.errors import GeometryError
 from codesign.files import replacing
 from codesign.geometry.brep import Brep, build_brep, moved
+from codesign.geometry.occt import silent
 from codesign.geometry.profile import Vector
 from codesign.geometry.shape import reflection
 from codesign.parts.component import Component, distinct_parts
@@ -128,7 +124,7 @@ class _Document:
         """Writes the file whole or not at all."""
         if schema not in SCHEMAS:
             raise ValueError(f"schema = {schema!r}: must be one of {', '.join(SCHEMAS)}")
-        with _silent(), replacing(path) as temporary:
+        with silent(), replacing(path) as temporary:
             STEPCAFControl_Controller.Init_s()
             Interface_Static.SetCVal_s("write.step.schema", SCHEMAS[schema])
             Interface_Static.SetCVal_s("write.stepcaf.subshapes.name", "On")
@@ -165,17 +161,3 @@ def _set_revision(writer: STEPCAFControl_Writer, revision: str) -> None:
 
 def _set_name(label: TDF_Label, name: str) -> None:
     TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # from UTF-8
-
-
-@contextmanager
-def _silent() -> Iterator[None]:
-    """OpenCASCADE without its printers."""
-    messenger = Message.DefaultMessenger_s()
-    printers = list(messenger.Printers())
-    for printer in printers:
-        messenger.RemovePrinter(printer)
-    try:
-        yield
-    finally:
-        for printer in printers:
-            messenger.AddPrinter(printer)
