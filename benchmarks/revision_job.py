@@ -1,0 +1,91 @@
+"""The jobs that against_revision.sh has several revisions of codesign do; run by the Python of each.
+
+python benchmarks/revision_job.py times            CPU seconds of each stage, one JSON document
+python benchmarks/revision_job.py results FILE     numbers of ten designs and of a small run, as JSON
+
+Revisions differ in where things are, so this file looks for them in the places that they have had.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import random
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import codesign
+from codesign import _core
+
+DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
+OTHER = {"angle": 60, "distance": 60, "offset": 100, "length": 150}  # shares no part with DESIGN
+PLACES = {
+    "stress_settings": ("codesign.chain.chain", "codesign.pipeline"),
+    "part_case": ("codesign.parts.load_case", "codesign.analysis"),
+    "analyse_part": ("codesign._core",),
+    "fly_robot": ("codesign.chain.fly", "codesign.pipeline"),
+}
+
+
+def find(name: str) -> Callable[..., Any]:
+    """The function of this name, wherever this revision has it."""
+    for place in PLACES[name]:
+        try:
+            function: Callable[..., Any] = getattr(importlib.import_module(place), name)
+        except (ImportError, AttributeError):
+            continue
+        return function
+    raise SystemExit(f"revision_job.py: this revision has no {name} in {', '.join(PLACES[name])}")
+
+
+def cpu(call: Callable[[], object]) -> float:
+    """CPU seconds, user and system, of all threads."""
+    start = time.process_time()
+    call()
+    return time.process_time() - start
+
+
+def times() -> dict[str, float]:
+    """CPU seconds of each stage; every stage starts from nothing known."""
+    study = codesign.load_study("ironcub")
+    parts = study.build_parts(DESIGN)
+    cases = {n: find("part_case")(p, find("stress_settings")(study.config, n)) for n, p in parts.items()}
+    seconds = {f"{n}: surface to stress": cpu(lambda c=c: find("analyse_part")(c)) for n, c in cases.items()}
+    robot = study.build_robot(DESIGN)
+    seconds["flight of 42 s"] = cpu(lambda: find("fly_robot")(study, robot))
+    seconds["evaluate, cold"] = cpu(lambda: study.evaluate(OTHER))
+    return seconds
+
+
+def results() -> dict[str, Any]:
+    """Every document of ten designs and of a run of 12 designs over 3 generations."""
+    study = codesign.load_study("ironcub")
+    draw = random.Random(1)
+    grids = [[draw.randrange(levels) for levels in study.space.levels] for _ in range(10)]
+    designs = [study.space.from_indices(grid).to_dict() for grid in grids]
+    evaluations = [study.evaluate(design).to_dict() for design in designs]
+    with tempfile.TemporaryDirectory() as folder:
+        run = codesign.optimize(
+            study, out=Path(folder) / "run", population=12, generations=3, seed=1, workers=1, cache=None
+        )
+        rows = [evaluation.to_dict() for evaluation in run.evaluations]
+    return {"evaluate": evaluations, "optimize": rows}
+
+
+def main() -> None:
+    """Does the job that the arguments name."""
+    sys.stderr.write(f"{Path(codesign.__file__).parent}, {Path(_core.__file__)}\n")
+    if sys.argv[1] == "times":
+        print(json.dumps(times()))
+    else:
+        Path(sys.argv[2]).write_text(json.dumps(results()))
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("CODESIGN_CACHE", tempfile.gettempdir())
+    main()
