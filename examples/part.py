@@ -9,7 +9,7 @@ from pathlib import Path
 
 from codesign.geometry.profile import Path as Outline
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, stepped_hole
-from codesign.parts.part import Part, parameter
+from codesign.parts import Part, parameter, write_step
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def main(folder: Path) -> None:
     print(f"{part.title}: {1e3 * properties.mass:.2f} g, centre of mass {(1e3 * properties.com).round(2)} mm")
     print(f"faces: {', '.join(part.faces)}; surface: {len(part.surface().triangles)} triangles")
     part.write_stl(folder / "motor_angle.stl")
-    part.write_step(folder / "motor_angle.step")
+    write_step(part, folder / "motor_angle.step")
 
 
 if __name__ == "__main__":

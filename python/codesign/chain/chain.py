@@ -35,7 +35,7 @@ CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm ins
 MODES = 3  # natural frequencies of a part, where a study limits the first
 
 if TYPE_CHECKING:
-    from codesign.storage.cache import PartCache
+    from codesign.problem.protocols import PartCache
     from codesign.study import StudyData
 
 

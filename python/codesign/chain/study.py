@@ -15,7 +15,7 @@ from codesign.study.study import StudyData
 if TYPE_CHECKING:
     from codesign.parts.load_case import Confirmation
     from codesign.problem.evaluation import Evaluation
-    from codesign.storage.cache import PartCache
+    from codesign.problem.protocols import PartCache
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,7 @@ import traceback
 from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # a worker imports what its study needs, nothing more
-    from codesign.problem.protocols import Problem
-    from codesign.storage.cache import PartCache
+    from codesign.problem.protocols import PartCache, Problem
 
 LENGTH = struct.Struct(">I")
 PR_SET_PDEATHSIG = 1  # linux/prctl.h

@@ -13,8 +13,7 @@ from codesign.execution.worker import load
 from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
-from codesign.problem.protocols import ExecutionDefaults, OptimizerDefaults, Problem
-from codesign.storage.cache import PartCache
+from codesign.problem.protocols import ExecutionDefaults, OptimizerDefaults, PartCache, Problem
 
 
 @dataclass(frozen=True)

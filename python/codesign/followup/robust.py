@@ -9,8 +9,8 @@ from typing import Any, Literal
 
 from codesign.followup.derived import DerivedStudy, load_changes
 from codesign.problem.evaluation import Evaluation
-from codesign.problem.protocols import Problem
-from codesign.storage.cache import MemoryCache, PartCache
+from codesign.problem.protocols import PartCache, Problem
+from codesign.storage.cache import MemoryCache
 
 Statistic = Literal["mean", "worst", "both"]
 STATISTICS = ("mean", "worst", "both")

@@ -160,7 +160,7 @@ def _extrusion(extrusion: Extrusion) -> Brep:
     for wire, _ in wires[1:]:
         maker.Add(TopoDS.Wire(wire.Reversed()))
     height = extrusion.end - extrusion.start
-    # With a copy, so that the end is no located twin of the start: STEP files had no name for the ends of moved cylinders.
+    # With a copy: else the end is a located twin of the start, and STEP files had no name for ends of moved cylinders.
     prism = BRepPrimAPI_MakePrism(maker.Face(), gp_Vec(*(height * c for c in base.z)), True)
     named = [(prism.FirstShape(), extrusion.start_face), (prism.LastShape(), extrusion.end_face)]
     for loop, (_, edges) in zip(extrusion.profile.loops, wires, strict=True):

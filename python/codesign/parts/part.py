@@ -10,7 +10,7 @@ from dataclasses import KW_ONLY, dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from codesign.errors import GeometryError, LibraryError
+from codesign.errors import GeometryError
 from codesign.geometry.mass import MassProperties, extrapolate, mass_properties, settled, volume_moments
 from codesign.geometry.mesh_files import write_stl
 from codesign.geometry.profile import Resolution, Vector
@@ -148,15 +148,6 @@ class Part(ABC):
     def write_stl(self, path: str | os.PathLike[str], resolution: Resolution = EXPORT_RESOLUTION) -> None:
         """Binary STL in mm; by default chords stay within 0.01 mm of the true surface."""
         write_stl(self.solid(resolution), path, self.title)
-
-    def write_step(self, path: str | os.PathLike[str], schema: str = "AP242") -> None:
-        """Exact solid with named faces as STEP in mm, application protocol "AP214" or "AP242"."""
-        try:
-            from codesign.parts.step import write_step  # OpenCASCADE is loaded only when asked for
-        except ImportError as error:
-            raise LibraryError.of(error, "STEP") from error
-
-        write_step(self, path, schema)
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import Any, Protocol
 
 from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
-from codesign.storage.cache import PartCache
+
+
+class PartCache(Protocol):
+    """What an evaluation needs of a cache; keys contain the hash of everything that decides the value."""
+
+    def get(self, key: str) -> dict[str, Any] | None:
+        """The stored value, or None."""
+
+    def put(self, key: str, value: dict[str, Any]) -> None:
+        """Stores a JSON-compatible value."""
 
 
 class OptimizerDefaults(Protocol):

@@ -18,11 +18,10 @@ from codesign.errors import StoreError
 from codesign.execution.pool import Executor, Outcome, Task
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import FrontTracker
-from codesign.problem.protocols import Problem
+from codesign.problem.protocols import PartCache, Problem
 from codesign.search.base import Grid, Search
 from codesign.search.progress import Progress
 from codesign.search.provenance import session_provenance
-from codesign.storage.cache import PartCache
 from codesign.storage.store import Generation, Record, RunStore
 
 WAIT = 0.5  # s between looks at the clock while nothing finishes

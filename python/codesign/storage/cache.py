@@ -12,22 +12,12 @@ import os
 import sqlite3
 import time
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 logger = logging.getLogger(__name__)
 
 BUSY_TIMEOUT = 30.0  # s to wait for another process's write
 SCHEMA = "CREATE TABLE IF NOT EXISTS entries (key TEXT PRIMARY KEY, value TEXT NOT NULL, stored REAL NOT NULL)"
-
-
-class PartCache(Protocol):
-    """What an evaluation needs of a cache; keys contain the hash of everything that decides the value."""
-
-    def get(self, key: str) -> dict[str, Any] | None:
-        """The stored value, or None."""
-
-    def put(self, key: str, value: dict[str, Any]) -> None:
-        """Stores a JSON-compatible value."""
 
 
 class MemoryCache:

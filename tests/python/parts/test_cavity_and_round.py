@@ -13,7 +13,7 @@ from codesign.errors import GeometryError
 from codesign.geometry.profile import Path as Outline
 from codesign.geometry.profile import circle, rectangle
 from codesign.geometry.shape import Frame, Revolution, Shape, box, cylinder
-from codesign.parts.part import Part, parameter
+from codesign.parts import Part, parameter, write_step
 
 CUBE = box((0, 0, 0), (20, 20, 20))
 BALL = Revolution(Outline(-1, 0).line(1, 0).arc(-1, 0, centre=(0, 0), turn="left").close())
@@ -71,7 +71,7 @@ def test_a_tank_is_whole_in_every_file(tmp_path: Path) -> None:
     stl = trimesh.load(tmp_path / "tank.stl")
     assert stl.is_watertight
     assert stl.volume == pytest.approx(TANK_VOLUME, rel=1e-6)
-    tank.write_step(tmp_path / "tank.step")
+    write_step(tank, tmp_path / "tank.step")
     text = (tmp_path / "tank.step").read_text()
     assert text.count("BREP_WITH_VOIDS(") == 1
 

@@ -25,7 +25,7 @@ from codesign.geometry.brep import Brep, build_brep, explore
 from codesign.geometry.shape import Shape, box
 from codesign.parts.component import Component
 from codesign.parts.part import Part
-from codesign.parts.step import Origin, write_step_assembly
+from codesign.parts.step import Origin, write_step, write_step_assembly
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -75,7 +75,7 @@ def components_of(label: TDF_Label) -> list[TDF_Label]:
 
 @pytest.mark.parametrize("part", PARTS, ids=repr)
 def test_part_read_back_is_a_valid_exact_named_solid(part: Part, tmp_path: Path) -> None:
-    part.write_step(tmp_path / "part.step")
+    write_step(part, tmp_path / "part.step")
     file = StepFile(tmp_path / "part.step")
     (label,) = file.roots()
     assert name_of(label) == part.name
@@ -94,7 +94,7 @@ def test_part_read_back_is_a_valid_exact_named_solid(part: Part, tmp_path: Path)
 
 @pytest.mark.parametrize(("part", "faces"), [(BRACKET, 42), (FOREARM, 55), (RIGHT_FOREARM, 55)], ids=str)
 def test_faces_have_no_seams_and_solids_have_names(part: Part, faces: int, tmp_path: Path) -> None:
-    part.write_step(tmp_path / "part.step")
+    write_step(part, tmp_path / "part.step")
     text = (tmp_path / "part.step").read_text()
     assert text.count("ADVANCED_FACE(") == faces
     assert f"MANIFOLD_SOLID_BREP('{part.name}'," in text
@@ -141,12 +141,12 @@ def test_named_faces_of_the_file_have_the_exact_area() -> None:
 
 @pytest.mark.parametrize(("schema", "words"), [("AP214", "AUTOMOTIVE_DESIGN"), ("AP242", "AP242_MANAGED_MODEL")])
 def test_schema_is_the_one_asked_for(schema: str, words: str, tmp_path: Path) -> None:
-    BRACKET.write_step(tmp_path / "part.step", schema=schema)
+    write_step(BRACKET, tmp_path / "part.step", schema=schema)
     text = (tmp_path / "part.step").read_text()
     assert words in text.partition("ENDSEC")[0]
     assert "SI_UNIT(.MILLI.,.METRE.)" in text
     with pytest.raises(ValueError, match="schema = 'AP203'"):
-        BRACKET.write_step(tmp_path / "other.step", schema="AP203")
+        write_step(BRACKET, tmp_path / "other.step", schema="AP203")
     assert [file.name for file in tmp_path.iterdir()] == ["part.step"]
 
 
@@ -175,7 +175,7 @@ def test_assembly_places_shared_parts(tmp_path: Path) -> None:
 
 def test_a_second_reader_sees_the_same_solid(tmp_path: Path) -> None:
     gmsh = pytest.importorskip("gmsh")
-    RIGHT_FOREARM.write_step(tmp_path / "part.step")
+    write_step(RIGHT_FOREARM, tmp_path / "part.step")
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -191,8 +191,8 @@ def test_a_second_reader_sees_the_same_solid(tmp_path: Path) -> None:
 
 
 def test_writing_is_silent_and_a_failure_leaves_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    BRACKET.write_step(tmp_path / "part.step")
+    write_step(BRACKET, tmp_path / "part.step")
     with pytest.raises(FileNotFoundError):
-        BRACKET.write_step(tmp_path / "missing" / "part.step")
+        write_step(BRACKET, tmp_path / "missing" / "part.step")
     assert capfd.readouterr() == ("", "")
     assert [file.name for file in tmp_path.iterdir()] == ["part.step"]
