@@ -53,7 +53,7 @@ def export_design(
     design = study.space.design(theta)
     parts = build_parts(study, design)
     placed = placed_components(study, design, parts)
-    order = Order(study, design, [component for component, _ in placed], chosen, organization)
+    order = Order(study, design, [component for component, _ in placed] + unplaced(study, parts), chosen, organization)
     with export_folder(out, order.revision, force) as folder:
         with ThreadPoolExecutor(1) as beside:  # the native chain releases the interpreter's lock
             chain = beside.submit(evaluate_with_fields, study, design)
@@ -107,6 +107,12 @@ def placed_components(study: Study, design: Design, parts: Mapping[str, Part]) -
             pose = poses[place.link] @ place.link_T_part.matrix()
             components.append((Component(place.link, part, pose), place.link))
     return components
+
+
+def unplaced(study: Study, parts: Mapping[str, Part]) -> list[Component]:
+    """One piece, at the origin, of every part that has no place on the robot."""
+    names = [section.name for section in study.config.parts if not section.placements]
+    return [Component(name, parts[name], np.eye(4)) for name in names]
 
 
 def _write_robot(study: Study, design: Design, components: list[tuple[Component, str]], folder: Path) -> Path:

@@ -1,14 +1,16 @@
 """An export is an order: how many of what, of which material, in which units; never over another design's files."""
 
 import csv
+import dataclasses
 import json
 from pathlib import Path
 
+import msgspec
 import pytest
 
 import synthetic_run
 from codesign.chain.study import load_study
-from codesign.cli.design import design_of_run, export_design
+from codesign.cli.design import design_of_run, export_design, unplaced
 from codesign.cli.export_folder import MANIFEST, export_folder
 from codesign.errors import CodesignError, DesignError, ExportError
 from codesign.parts.step import SCHEMAS
@@ -92,6 +94,16 @@ def test_stress_files_name_their_model(out: Path) -> None:
     assert whole.points[:, 1].min() == pytest.approx(-whole.points[:, 1].max(), rel=1e-9)
     assert len(whole.cells) == 2 * len(half.cells)
     assert "N pressing on face seat" in half.strings["load_case"]
+
+
+def test_a_part_without_a_place_is_made_once() -> None:
+    study = load_study("ironcub")
+    bracket, forearm = study.config.parts
+    config = msgspec.structs.replace(study.config, parts=[msgspec.structs.replace(bracket, placements=[]), forearm])
+    parts = study.build_parts(DESIGN)
+    (component,) = unplaced(dataclasses.replace(study, config=config), parts)
+    assert component.part is parts["jetpack_bracket"]
+    assert unplaced(study, parts) == []
 
 
 def test_another_design_is_never_overwritten_silently(out: Path, tmp_path: Path) -> None:
