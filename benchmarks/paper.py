@@ -42,7 +42,7 @@ PAPER_SECONDS = 216.0  # a design, as the paper states
 PAPER_YIELD, STATED_YIELD = 524.0, 462.0  # MPa: in the published safety factors, in the paper's text
 ROBOTS = {"Original": "base_robot.urdf", "Optim1": "optim1.urdf", "Optim3": "optim3.urdf"}
 PUBLISHED_THETA = {"Original": (15, 42, 80, 108), "Optim1": (1, 48, 88, 50), "Optim3": (1, 48, 100, 130)}
-SHOWN = ("front", "spider", "validation", "stress", "snapshots", "parts", "convergence")
+SHOWN = ("front", "chosen", "validation", "stress", "snapshots", "parts", "convergence")
 ROOT = Path(__file__).resolve().parents[1]
 
 

@@ -1,20 +1,26 @@
 """Figures of a run: the software renderer, the robot's solids, and that every figure shows what it says."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from trimesh import Trimesh, creation
 
 import synthetic_run
+from codesign.problem.evaluation import Evaluation
+from codesign.report.data import Entry, ReportData
 from codesign.report.details import detail_key
-from codesign.report.figures import FIGURES, FigureData, write_figures
+from codesign.report.figures import FIGURES, FigureData, solids, write_figures
 from codesign.report.figures.flights import command
 from codesign.report.figures.solids import close_up, posture, stress_tint
 from codesign.report.figures.style import style
 from codesign.report.raster import Body, View, fitting_view, render
 from codesign.report.reading import read_report_data
 from codesign.report.scene import robot_scene
+from codesign.report.validation import Disturbance, Flight, Validation
+from figure_text import outside, overlaps
 from synthetic_details import detail
 
 STUDY = synthetic_run.Study()
@@ -118,15 +124,83 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> FigureData:
     folder: Path = tmp_path_factory.mktemp("figures") / "run"
     synthetic_run.write_run(folder, synthetic_run.evaluations(120))
     run = read_report_data(folder, STUDY, synthetic_run.evaluate(synthetic_run.BASELINE))
-    return FigureData(run, {detail_key(e): detail(e) for e in run.highlights.values()}, STUDY)
+    return FigureData(run, {detail_key(e): detail(e) for e in run.highlights.values()}, STUDY, validated(run))
 
 
-@pytest.mark.parametrize("kind", [k for k in FIGURES if k.name != "validation"], ids=lambda kind: kind.name)
-def test_every_figure_is_drawn(data, kind):
+def validated(run: ReportData) -> Validation:
+    """Made-up flights of the highlighted designs: calm ones and disturbed ones."""
+    random = np.random.default_rng(2)
+    found = []
+    for role, evaluation in sorted(run.highlights.items(), key=lambda item: item[0] != "original"):
+        for trajectory, seed in [("climb", None), ("turn", None), *(("turn", seed) for seed in range(8))]:
+            values = {key: value * (1 + 0.02 * random.normal()) for key, value in evaluation.objectives.items()}
+            found.append(Flight(role, dict(evaluation.design), trajectory, seed, True, None, values, {}))
+    return Validation(tuple(found), Disturbance())
+
+
+def with_long_words(data: FigureData) -> FigureData:
+    """The same with names as long as people write them."""
+    longer = {"momentum": "Largest deviation of the spatial momentum", "thrust": "Mean total thrust of all engines"}
+    objectives = tuple(replace(o, label=longer.get(o.key, o.label)) for o in data.run.objectives)
+    labels = {v.name: f"{data.run.label(v)} measured from the mounting flange" for v in data.run.variables}
+    run = replace(data.run, objectives=objectives, labels=labels)
+    groups = tuple(f"{name} joints that the pilot moves" for name in ("torso", "left arm", "right arm"))
+    details = {k: replace(d, flight=replace(d.flight, groups=groups)) for k, d in data.details.items()}
+    return FigureData(run, details, data.study, validated(run))
+
+
+@pytest.mark.parametrize("kind", FIGURES, ids=lambda kind: kind.name)
+@pytest.mark.parametrize("words", ["short", "long"])
+def test_every_figure_is_drawn_and_no_text_overlaps(data, kind, words, monkeypatch):
+    shown = data
+    if words == "long":
+        shown = with_long_words(data)
+        monkeypatch.setattr(solids, "render", lambda *_: np.full((10, 15, 4), 255, dtype=np.uint8))  # only words count
     with style():
-        figure = kind.draw(data)
-    assert figure is not None
+        figure = kind.draw(shown)
+        assert figure is not None
+        assert overlaps(figure) == []
+        assert outside(figure) == []
     assert all(axes.has_data() or axes.images for axes in figure.axes)
+
+
+def test_six_objectives_fit_their_figures(data):
+    extra = [
+        replace(data.run.objectives[0], key=f"extra_{k}", label=f"Objective number {k} of the study") for k in range(3)
+    ]
+    entries = tuple(
+        Entry(e.id, replace(e.evaluation, objectives=e.evaluation.objectives | _more(e.evaluation)), e.generation)
+        for e in data.run.entries
+    )
+    baseline = replace(data.run.baseline, objectives=data.run.baseline.objectives | _more(data.run.baseline))
+    run = replace(data.run, objectives=(*data.run.objectives, *extra), entries=entries, baseline=baseline)
+    wide = FigureData(run, {}, data.study, validated(run))
+    with style():
+        for kind in FIGURES:
+            if kind.name in ("projections", "parallel", "chosen", "validation"):
+                assert overlaps(kind.draw(wide)) == [], kind.name
+
+
+def _more(evaluation: Evaluation) -> dict[str, float]:
+    if not evaluation.objectives:
+        return {}
+    return {f"extra_{k}": (k + 1) * evaluation.objectives["momentum"] + evaluation.design["length"] for k in range(3)}
+
+
+def test_legends_of_the_flight_lie_beside_the_curves(data):
+    with style():
+        figure = next(k for k in FIGURES if k.name == "flight").draw(data)
+        FigureCanvasAgg(figure).draw()
+    for axes in figure.axes:
+        assert not axes.get_legend().get_window_extent().overlaps(axes.bbox)
+
+
+def test_commands_close_together_are_written_on_several_lines(data):
+    study = type("Busy", (synthetic_run.Study,), {})()
+    flight = next(iter(data.details.values())).flight
+    details = {k: replace(d, flight=replace(flight, trajectory="trajectory_5")) for k, d in data.details.items()}
+    with style():
+        assert overlaps(next(k for k in FIGURES if k.name == "flight").draw(FigureData(data.run, details, study))) == []
 
 
 def test_figures_are_written_as_png_and_pdf_without_touching_settings(data, tmp_path):

@@ -33,7 +33,7 @@ class FigureKind:
 FIGURES = (
     FigureKind("front", "All designs in two objectives; the third colours the best compromises.", fronts.front),
     FigureKind("projections", "All designs in every pair of objectives.", fronts.projections),
-    FigureKind("spider", "Chosen designs: parameters over their bounds, objectives over their range.", designs.spider),
+    FigureKind("chosen", "Chosen designs: parameters over their bounds, objectives over their range.", designs.chosen),
     FigureKind("parallel", "Parameters and objectives of all feasible designs.", designs.parallel),
     FigureKind("convergence", "Growth of the front, and outcomes, over the search.", search.convergence),
     FigureKind(

@@ -1,7 +1,8 @@
-"""Figures of designs: parameters and objectives of chosen ones as a spider plot, of all as parallel coordinates."""
+"""Figures of designs: parameters and objectives of chosen ones side by side, of all as parallel coordinates."""
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -17,36 +18,49 @@ from codesign.report.words import number
 COLOURS = (style.INK, style.BLUE, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
 
 
-def spider(data: FigureData) -> Any:
-    """Parameters over their bounds and objectives over their range on the front, of the highlighted designs."""
+def chosen(data: FigureData) -> Any:
+    """The highlighted designs: parameters over their bounds; below, objectives over the range of these designs."""
+    shown = {role: e for role, e in data.run.highlights.items() if np.isfinite(data.run.vector(e)).all()}
+    return draw_chosen(data.run, shown) if len(shown) > 1 else None
+
+
+def draw_chosen(run: ReportData, shown: dict[str, Evaluation]) -> Any:
+    """Designs by role on one line a parameter and one an objective; each line says where it starts and ends."""
     from matplotlib.figure import Figure
 
-    run = data.run
-    chosen = {role: e for role, e in run.highlights.items() if np.isfinite(run.vector(e)).all()}
-    if len(chosen) < 2:
-        return None
-    names, low, high = _scales(run)
-    angles = np.linspace(0.0, 2.0 * np.pi, len(names), endpoint=False)
-    figure = Figure(figsize=(style.COLUMN * 1.5, style.COLUMN * 1.3))
-    axes: Any = figure.add_subplot(projection="polar")
-    axes.set_theta_offset(np.pi / 2.0)
-    axes.set_theta_direction(-1)
-    for (role, evaluation), (colour, width) in zip(chosen.items(), _looks(chosen), strict=True):
-        scaled = (_row(run, evaluation) - low) / (high - low)
-        closed = np.append(scaled, scaled[0])
-        axes.plot(
-            np.append(angles, angles[0]), closed, color=colour, linewidth=width, marker="o", markersize=2.5, label=role
-        )
-        axes.fill(angles, scaled, color=colour, alpha=0.04)
-    axes.set(ylim=(-0.15, 1.0), yticks=[0.0, 0.5, 1.0], yticklabels=[])
-    axes.set_xticks(angles, [f"{n}\n{number(a, 3)} … {number(b, 3)}" for n, a, b in zip(names, low, high, strict=True)])
-    axes.tick_params(axis="x", pad=6)
-    for text, angle in zip(axes.get_xticklabels(), angles, strict=True):
-        sideways = np.sin(angle)  # labels on the right start at their point, on the left they end there
-        text.set_horizontalalignment("center" if abs(sideways) < 0.1 else "left" if sideways > 0 else "right")
-    axes.spines["polar"].set_visible(False)
-    figure.legend(loc="outside lower center", ncols=3)
+    rows = np.array([_row(run, evaluation) for evaluation in shown.values()])
+    split, names = len(run.variables), _names(run)
+    low = np.concatenate([[v.minimum for v in run.variables], rows[:, split:].min(axis=0)])
+    high = np.concatenate([[v.maximum for v in run.variables], rows[:, split:].max(axis=0)])
+    scaled = (rows - low) / np.where(high > low, high - low, 1.0)
+    figure = Figure(figsize=(style.PAGE, 0.9 + 0.34 * len(names)))
+    panels = np.atleast_1d(figure.subplots(2, 1, height_ratios=[split, len(names) - split]))
+    for axes, part, title in zip(
+        panels, (slice(0, split), slice(split, None)), ("parameters", "objectives, lower is better"), strict=True
+    ):
+        _lines(axes, names[part], low[part], high[part])
+        axes.set_title(title)
+        places = np.arange(len(names[part]))
+        for (role, values), (colour, size) in zip(zip(shown, scaled[:, part], strict=True), _looks(shown), strict=True):
+            axes.scatter(values, places, 26.0 * size, colour, "D" if role == "original" else "o", label=role, zorder=3,
+                edgecolors="white", linewidths=0.5)  # fmt: skip
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
+
+
+def _lines(axes: Any, names: Sequence[str], low: Matrix, high: Matrix) -> None:
+    """A horizontal line for each name, from its lowest to its highest value."""
+    places = np.arange(len(names))
+    axes.hlines(places, 0.0, 1.0, color=style.LINE, linewidth=1.0, zorder=0)
+    for place, a, b in zip(places, low, high, strict=True):
+        axes.text(-0.02, place, number(float(a), 4), ha="right", va="center", fontsize=6, color=style.MUTED)
+        axes.text(1.02, place, number(float(b), 4), ha="left", va="center", fontsize=6, color=style.MUTED)
+    axes.set_yticks(places, [textwrap.fill(name, 30) for name in names])
+    axes.set(xlim=(-0.12, 1.12), ylim=(len(names) - 0.5, -0.5), xticks=[])
+    axes.grid(visible=False)
+    axes.tick_params(axis="y", length=0)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_visible(False)
 
 
 def parallel(data: FigureData) -> Any:
@@ -79,7 +93,7 @@ def parallel(data: FigureData) -> Any:
             colour = style.ORIGINAL if name == "original" else style.INK
             axes.plot(*line.T, color=colour, linewidth=2.0, label=name, clip_on=False)
     axes.set(xlim=(0, len(names) - 1), ylim=(-0.03, 1.03), yticks=[])
-    axes.set_xticks(places, [name.replace(" (", "\n(") for name in names])
+    axes.set_xticks(places, [style.wrapped(name, style.PAGE / len(names)) for name in names])
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)
     axes.spines["bottom"].set_visible(False)
@@ -97,18 +111,22 @@ def _row(run: ReportData, evaluation: Evaluation) -> Matrix:
     return np.concatenate([[evaluation.design[v.name] for v in run.variables], run.vector(evaluation)])
 
 
+def _names(run: ReportData) -> list[str]:
+    """Parameters and objectives with their units."""
+    units = {v.name: "°" if v.unit == "deg" else v.unit for v in run.variables}
+    named = [f"{run.label(v)} ({units[v.name]})" if v.unit else run.label(v) for v in run.variables]
+    return named + [o.title for o in run.objectives]
+
+
 def _scales(run: ReportData) -> tuple[list[str], Matrix, Matrix]:
     """Names and ranges of the axes: a parameter's bounds; an objective's range on the front and the original."""
-    names = [
-        f"{run.label(v)} ({'°' if v.unit == 'deg' else v.unit})" if v.unit else run.label(v) for v in run.variables
-    ]
     rows = [run.values[i] for i in run.front]
     if run.baseline_vector is not None:
         rows.append(run.baseline_vector)
     seen = np.array(rows)
     low = np.concatenate([[v.minimum for v in run.variables], seen.min(axis=0)])
     high = np.concatenate([[v.maximum for v in run.variables], seen.max(axis=0)])
-    return names + [o.title for o in run.objectives], low, np.where(high > low, high, low + 1.0)
+    return _names(run), low, np.where(high > low, high, low + 1.0)
 
 
 def _looks(chosen: dict[str, Evaluation]) -> list[tuple[str, float]]:

@@ -24,7 +24,7 @@ def front(data: FigureData) -> Any:
     dots = draw_projection(axes, run, 0, 1, colour=2 if len(run.objectives) > 2 else None)
     if dots is not None and len(run.objectives) > 2:
         bar = figure.colorbar(dots, ax=axes, aspect=32, pad=0.02)
-        bar.set_label(run.objectives[2].title)
+        bar.set_label(style.wrapped(run.objectives[2].title, style.COLUMN * 0.9))
         bar.outline.set_visible(False)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, columnspacing=1.2)
     return figure
@@ -32,16 +32,18 @@ def front(data: FigureData) -> Any:
 
 def projections(data: FigureData) -> Any:
     """All pairs of objectives side by side."""
-    from matplotlib.figure import Figure
-
     run = data.run
     pairs = list(combinations(range(len(run.objectives)), 2))
     if not run.front or len(pairs) < 2:
         return None
-    figure = Figure(figsize=(style.PAGE, style.PAGE / len(pairs) + 0.35))
-    for axes, (x, y) in zip(np.atleast_1d(figure.subplots(1, len(pairs))), pairs, strict=True):
+    figure, panels = style.panels(len(pairs), style.PAGE / style.COLUMNS + 0.1)
+    for axes, (x, y) in zip(panels, pairs, strict=False):
         draw_projection(axes, run, x, y)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=5)
+        style.few_ticks(axes)
+        width = style.PAGE / style.COLUMNS - 0.6
+        axes.set_xlabel(style.wrapped(run.objectives[x].title, width))
+        axes.set_ylabel(style.wrapped(run.objectives[y].title, width))
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
 
 

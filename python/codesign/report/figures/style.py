@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -18,6 +19,8 @@ THIRD = "viridis"
 STRESS = ("#e3e6e8", "#f4e3a1", "#f2ac42", "#d2601a", "#7a1616")  # lightness falls steadily
 STRESS_STOPS = (0.0, 0.2, 0.45, 0.7, 1.0)
 PIXELS_PER_INCH = 220
+COLUMNS = 3  # of panels side by side
+LETTER = 0.58  # width of a letter with its space, of the font size; on the safe side
 
 SETTINGS: dict[str, Any] = {
     "font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7,
@@ -38,6 +41,34 @@ def style() -> Iterator[None]:
     settings: Any = {**mpl.rcParamsDefault, "backend": "agg", **SETTINGS}
     with mpl.rc_context(settings):
         yield
+
+
+def panels(count: int, height: float, **options: Any) -> tuple[Any, list[Any]]:
+    """A figure as wide as a page with `count` axes of a height [inches], at most COLUMNS of them side by side."""
+    from matplotlib.figure import Figure
+
+    columns = min(count, COLUMNS)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(PAGE, rows * height + 0.5))
+    axes = figure.subplots(rows, columns, squeeze=False, **options).ravel().tolist()
+    for unused in axes[count:]:
+        unused.remove()
+    return figure, axes[:count]
+
+
+def few_ticks(axes: Any, count: int = 4) -> None:
+    """At most `count` intervals between ticks on both axes, without offset text: labels of small panels keep apart."""
+    from matplotlib.ticker import MaxNLocator
+
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(count))
+        axis.get_major_formatter().set_useOffset(False)
+
+
+def wrapped(text: str, width: float, size: float = 8.0) -> str:
+    """Text broken into lines that fit `width` [inches] at a font size [points]; a unit in brackets stays whole."""
+    letters = max(6, int(72.0 * width / (LETTER * size)))
+    return "\n".join(textwrap.wrap(text.replace(" (", "\n("), letters, replace_whitespace=False))
 
 
 def stress_colours() -> Any:

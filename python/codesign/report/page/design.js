@@ -51,7 +51,7 @@ function drawParts(i) {
     if (!values) return '';
     const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd>${before(d, k, n, factor, digits)}</div>`);
     const about = [part.material, part.load && `Load: ${part.load}`].filter(Boolean).map(text => `<p class="count">${escaped(text)}.</p>`).join('') + (part.warning ? `<p class="count bad">${escaped(part.warning)}</p>` : '');
-    const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, coloured by stress; drag to turn"></div>` : '';
+    const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, coloured by stress; drag to turn"></div>${stressScale(detail.parts[part.key])}` : '';
     return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl>${about}</article>`;
   });
   document.querySelectorAll('.solid').forEach(node => window.Plotly?.purge(node));
@@ -80,23 +80,30 @@ function decode(text, type) {
   return new type(bytes.buffer);
 }
 
-/** Camera position; farther away in a narrow box. */
+/** Camera position; farther away in a box that is narrower than high. */
 function eye(node) {
-  const far = Math.max(1, 1.15 * node.clientHeight / node.clientWidth);
+  const far = Math.max(1, node.clientHeight / node.clientWidth);
   return {x: 1.05 * far, y: -1.45 * far, z: 0.95 * far};
 }
 
+/** Sides of the part's box for plotly, scaled so that the part stays inside the view however it is turned. */
+const DIAGONAL = 1.9;
+function ratio(...coordinates) {
+  const sides = coordinates.map(values => values.reduce((high, v) => Math.max(high, v), -Infinity) - values.reduce((low, v) => Math.min(low, v), Infinity));
+  const [x, y, z] = sides.map(side => DIAGONAL * side / (Math.hypot(...sides) || 1));
+  return {x, y, z};
+}
+
+/** The scale under a part: unloaded to the peak that decides its safety factor. */
+const stressScale = solid => `<div class="scale" role="img" aria-label="Colors from 0 to ${number(solid.peak * 1e-6, 3)} MPa"><span>0</span><i style="background:linear-gradient(90deg,${STRESS_SCALE.map(([at, hex]) => `${hex} ${100 * at}%`).join()})"></i><span>${number(solid.peak * 1e-6, 3)} MPa</span></div>`;
+
 function drawSolid(node, solid) {
-  const mesh = solid.decoded ??= decodedSolid(solid), limit = solid.peak * 1e-6;
+  const mesh = solid.decoded ??= decodedSolid(solid);
   const hidden = {visible: false, showspikes: false};
-  const bar = {title: {text: 'MPa', side: 'top', font: font()}, thickness: 9, len: 0.7, x: 0.98, xanchor: 'right', outlinewidth: 0, tickfont: font(), ticklen: 0, nticks: 6};
   plotly().newPlot(node, [{
     type: 'mesh3d', x: mesh.x, y: mesh.y, z: mesh.z, i: mesh.i, j: mesh.j, k: mesh.k, facecolor: mesh.colours, text: mesh.text, hovertemplate: '%{text} MPa<extra></extra>',
     lighting: {ambient: 1, diffuse: 0, specular: 0, fresnel: 0},
-  }, {  // carries the colour bar
-    type: 'scatter3d', mode: 'markers', x: [mesh.x[0]], y: [mesh.y[0]], z: [mesh.z[0]], hoverinfo: 'skip',
-    marker: {size: 1, opacity: 0, color: [0], colorscale: STRESS_SCALE, cmin: 0, cmax: limit, showscale: true, colorbar: bar},
-  }], layout({margin: {l: 0, r: 0, t: 0, b: 0}, scene: {xaxis: hidden, yaxis: hidden, zaxis: hidden, aspectmode: 'data', dragmode: 'orbit', camera: {eye: eye(node), projection: {type: 'orthographic'}}}}), settings);
+  }], layout({margin: {l: 0, r: 0, t: 0, b: 0}, scene: {xaxis: hidden, yaxis: hidden, zaxis: hidden, aspectmode: 'manual', aspectratio: mesh.ratio, dragmode: 'orbit', camera: {eye: eye(node), projection: {type: 'orthographic'}}}}), settings);
 }
 
 /** Arrays for plotly, with a colour for each triangle: that of its stress, shaded here because plotly's lights fail without perspective. */
@@ -111,9 +118,9 @@ function decodedSolid(solid) {
     const [ux, uy, uz, vx, vy, vz] = [x[b] - x[a], y[b] - y[a], z[b] - z[a], x[c] - x[a], y[c] - y[a], z[c] - z[a]];
     const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
     const facing = (nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2]) / (Math.hypot(nx, ny, nz) || 1);
-    return stressColour((stress[a] + stress[b] + stress[c]) / 3 / solid.peak, 0.8 + 0.2 * facing);
+    return stressColour((stress[a] + stress[b] + stress[c]) / 3 / (solid.peak || 1), 0.8 + 0.2 * facing);
   });
-  return {x, y, z, i, j, k, colours, text: Array.from(stress, s => number(s * 1e-6, 3))};
+  return {x, y, z, i, j, k, colours, ratio: ratio(x, y, z), text: Array.from(stress, s => number(s * 1e-6, 3))};
 }
 
 const LIGHT = [0.3, -0.55, 0.78];

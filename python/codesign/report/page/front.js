@@ -44,7 +44,10 @@ function drawFront() {
   const [x, y] = [report.objectives[front.x], report.objectives[front.y]];
   plotly().react(plot, frontTraces(), layout({
     xaxis: axis(x.title, {range: x.view}), yaxis: axis(y.title, {range: y.view}), hovermode: 'closest', dragmode: 'zoom', hoverdistance: 24,
-  }), settings);
+  }), {...settings, doubleClick: 'reset+autosize'});
+  const inside = ([low, high], value) => value >= low && value <= high;
+  const away = points(() => true).filter(i => !inside(x.view, designs[i].f[front.x]) || !inside(y.view, designs[i].f[front.y])).length;
+  element('front-outside').textContent = away ? `${away} ${away === 1 ? 'design lies' : 'designs lie'} outside of this view; double-click the chart to see all.` : '';
   if (!front.ready) {
     front.ready = true;
     plot.on('plotly_click', event => select(event.points[0].customdata, {scroll: true}));

@@ -36,6 +36,24 @@ async function copy(button) {
   setTimeout(() => { button.textContent = label; }, 1600);
 }
 
+/** Saves the table as CSV, or a chart as a picture. */
+function save(what) {
+  if (what !== 'table') { plotly().downloadImage(what, {format: 'png', scale: 3, filename: `codesign-${what}`}); return; }
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob(['\ufeff' + csv()], {type: 'text/csv'}));
+  link.download = 'designs.csv';
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+/** Draws everything at the width of the paper, in light colours; and back. */
+function forPaper(starts) {
+  document.documentElement.classList.toggle('printing', starts);
+  paint(starts ? 'light' : remembered() || (system.matches ? 'dark' : 'light'));
+  if (starts) { drawFront(); [...waiting.keys()].forEach(drawNow); }
+  document.querySelectorAll('.js-plotly-plot').forEach(node => plotly().relayout(node, starts ? {width: node.clientWidth, height: node.clientHeight} : {width: null, height: null, autosize: true}));
+}
+
 function remember(theme) { try { localStorage.setItem('codesign-theme', theme); } catch { /* storage is off: the choice lasts for this visit */ } }
 function remembered() { try { return localStorage.getItem('codesign-theme'); } catch { return null; } }
 
@@ -52,6 +70,8 @@ document.addEventListener('click', event => {
   if (by) { step(Number(by.dataset.step)); element('card').querySelector(`[data-step="${by.dataset.step}"]`).focus(); }
   if (chosen) select(Number(chosen.dataset.select));
   if (copied) copy(copied);
+  const saved = event.target.closest('[data-save]');
+  if (saved) save(saved.dataset.save);
 });
 const system = window.matchMedia('(prefers-color-scheme: dark)');
 element('theme').addEventListener('click', () => {
@@ -60,8 +80,9 @@ element('theme').addEventListener('click', () => {
   paint(theme);
 });
 system.addEventListener('change', () => { if (!remembered()) paint(system.matches ? 'dark' : 'light'); });
-window.addEventListener('beforeprint', () => { paint('light'); drawFront(); [...waiting.keys()].forEach(drawNow); });
-window.addEventListener('afterprint', () => paint(remembered() || (system.matches ? 'dark' : 'light')));
+window.addEventListener('beforeprint', () => forPaper(true));
+window.addEventListener('afterprint', () => forPaper(false));
+window.addEventListener('resize', hintSideways);
 
 if (!FILTERS.front || !designs.some(FILTERS.front)) table.filter = 'all';
 frontControls();

@@ -72,7 +72,8 @@ def _trade_offs(run: ReportData) -> Block:
     label = "All designs in two objectives. The table of all designs holds the same and can be used with the keyboard."
     body = (
         f'<div class="trade"><div class="chart"><div id="front" role="img" aria-label="{label}"></div>'
-        f'<ul class="key">{key}</ul></div>{CARD}</div>{ANNOUNCEMENT}'
+        f'<ul class="key">{key}</ul><p class="count"><span id="front-outside"></span> '
+        f'<button type="button" class="link" data-save="front">Save as PNG</button></p></div>{CARD}</div>{ANNOUNCEMENT}'
     )
     third = " Colour is the remaining objective." if len(run.objectives) > 2 else ""
     text = f"Lower is better on both axes.{third} Click a design to see it; drag to zoom, double-click to zoom back."
@@ -103,7 +104,9 @@ def _designs(run: ReportData) -> Block:
     body = (
         '<div class="scroll" id="designs-scroll" tabindex="-1"><table aria-label="Designs">'
         '<thead id="designs-head"></thead><tbody id="designs-body"></tbody></table></div>'
-        '<p class="count" id="designs-count" aria-live="polite"></p>'
+        '<p class="count"><span id="designs-count" aria-live="polite"></span><span id="designs-sideways" hidden>; '
+        "scroll sideways for more columns</span>. "
+        '<button type="button" class="link" data-save="table">Save all as CSV</button></p>'
     )
     against = " Percentages compare with the original." if run.baseline_vector is not None else ""
     text = f"Sort by a column’s head; select with a click or with the arrow keys.{against}"

@@ -42,6 +42,7 @@ function drawTable() {
   element('designs-count').textContent = `${rows.length} of ${designs.length} designs`;
   document.querySelectorAll('[data-filter]').forEach(b => b.setAttribute('aria-pressed', b.dataset.filter === table.filter));
   markRow();
+  hintSideways();
 }
 
 const rowOf = i => element('designs-body')?.querySelector(`tr[data-design="${i}"]`);
@@ -53,6 +54,20 @@ function markRow() {
   const row = rowOf(state.selected);
   if (row) { row.setAttribute('aria-selected', 'true'); row.tabIndex = 0; }
   else { const first = body.querySelector('tr[data-design]'); if (first) first.tabIndex = 0; }
+}
+
+/** All designs with every column of the table, as comma-separated values. */
+function csv() {
+  const cell = value => /[",\n]/.test(value) ? `"${String(value).replace(/"/g, '""')}"` : String(value ?? '');
+  const head = c => [c.head, c.unit && `(${c.unit})`].filter(Boolean).join(' ');
+  const rows = designs.map(d => [STATUS[d.status], ...shownColumns.map(c => c.value(d))]);
+  return [['Status', ...shownColumns.map(head)], ...rows].map(row => row.map(cell).join(',')).join('\r\n') + '\r\n';
+}
+
+/** Says that a table continues to the side, where it does. */
+function hintSideways() {
+  const box = element('designs-scroll');
+  if (box) element('designs-sideways').hidden = box.scrollWidth <= box.clientWidth;
 }
 
 /** Scrolls the table, not the page, to the selected row. */
