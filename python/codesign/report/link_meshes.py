@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -63,19 +63,20 @@ def link_meshes(visuals: str, packages: tuple[Path, ...]) -> LinkMeshes:
     for link in robot.link_names:
         for visual in robot.link(link).visuals:
             if visual.geometry is not None and visual.geometry.mesh is not None:
-                mesh = _read(visual, path.parent, packages)
+                mesh = read_mesh(visual, path.parent, packages)
                 if mesh is not None:
                     found.setdefault(link, []).append(mesh)
     return LinkMeshes(found, robot.frame_poses())
 
 
-def _read(visual: Any, folder: Path, packages: tuple[Path, ...]) -> LinkMesh | None:
+def read_mesh(visual: Any, folder: Path | None, packages: tuple[Path, ...]) -> LinkMesh | None:
+    """The mesh of a URDF visual in link axes; None if it is not found or cannot be read."""
     import trimesh
 
     mesh = visual.geometry.mesh
     try:
         loaded = trimesh.load_mesh(resolve_mesh(mesh.filename, folder, packages))
-    except (UrdfError, OSError, ValueError):
+    except (UrdfError, OSError, ValueError, NotImplementedError, ImportError):
         return None
     if not isinstance(loaded, trimesh.Trimesh) or not len(loaded.faces):
         return None
@@ -83,3 +84,31 @@ def _read(visual: Any, folder: Path, packages: tuple[Path, ...]) -> LinkMesh | N
     origin = np.eye(4) if visual.origin is None else visual.origin
     points = np.asarray(loaded.vertices) * scale @ origin[:3, :3].T + origin[:3, 3]
     return points, np.asarray(loaded.faces, dtype=np.int64)
+
+
+def absent_meshes(robot: RobotDescription, packages: tuple[Path, ...]) -> list[str]:
+    """File names of the robot's visual meshes that are not found or cannot be read, each once."""
+    meshes: dict[str, Any] = {}
+    for link in robot.link_names:
+        for visual in robot.link(link).visuals:
+            if visual.geometry is not None and visual.geometry.mesh is not None:
+                meshes.setdefault(visual.geometry.mesh.filename, visual)
+    return [name for name, visual in meshes.items() if read_mesh(visual, robot.directory, packages) is None]
+
+
+def absence_in_words(absent: Sequence[str]) -> str:
+    """That meshes are missing in the pictures, and what to install or set; empty if none is."""
+    if not absent:
+        return ""
+    packages = sorted({name.removeprefix("package://").partition("/")[0] for name in absent if "package://" in name})
+    files = [name for name in absent if "package://" not in name]
+    said = (
+        f"{len(absent)} mesh{'es' if len(absent) > 1 else ''} of the robot are not drawn: not found, or not readable."
+    )
+    if packages:
+        these, them = ("packages", "them") if len(packages) > 1 else ("package", "it")
+        variable = next(iter(SEARCH_PATHS))
+        said += f" Install the {these} {', '.join(packages)}, or name the folder that holds {them} in {variable}."
+    if files:
+        said += f" Looked for {files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''} beside the URDF."
+    return said

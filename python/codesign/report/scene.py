@@ -13,7 +13,7 @@ import numpy as np
 import yourdfpy
 from numpy.typing import NDArray
 
-from codesign.report.link_meshes import LinkMesh, link_meshes, package_paths
+from codesign.report.link_meshes import LinkMesh, link_meshes, package_paths, read_mesh
 from codesign.robot.description import RobotDescription
 from codesign.transforms import Matrix
 
@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 PLAIN = (0.72, 0.74, 0.77)  # of shapes without a colour
+DOWN = (0.0, 0.0, -1.0)  # along which a thrust pushes unless the study says otherwise
 SEGMENTS = 40  # of a round shape
 
 
@@ -43,13 +44,15 @@ class Piece:
 class RobotScene:
     """Everything to draw a robot.
 
-    jets: frames whose thrust pushes the robot along their −z. max_thrust: of one jet [N].
+    jets: frames that thrusts act on, along the unit vectors `pushes` (jets, 3) of these frames. max_thrust: of the
+    strongest [N].
     """
 
     robot: RobotDescription
     pieces: tuple[Piece, ...]
     jets: tuple[str, ...] = ()
     joints: tuple[str, ...] = field(default=())
+    pushes: Array = field(default_factory=lambda: np.empty((0, 3)))
     max_thrust: float = 1.0
 
     @cached_property
@@ -92,26 +95,26 @@ def robot_scene(
     """
     checked = study.space.design(design)
     config = study.configured(checked)
-    robot = RobotDescription.from_text(study.build_robot(checked))
+    robot = RobotDescription.from_text(study.build_robot(checked), directory=study.base_robot.directory)
+    packages = package_paths() if packages is None else packages
     parts = study.build_parts(checked)
     placed: dict[str, list[Piece]] = {}
     for part in config.parts:
         for place in part.placements:
             piece = _part_piece(part.name, parts[part.name], place, (fields or {}).get(part.name))
             placed.setdefault(place.link, []).append(piece)
-    real = _real_shapes(
-        robot, frozenset(placed), config.robot.visuals, package_paths() if packages is None else packages
-    )
+    real = _real_shapes(robot, frozenset(placed), config.robot.visuals, packages)
     colours = _materials(robot)
     pieces: list[Piece] = []
     for link in robot.link_names:
-        own = _link_pieces(robot, link, colours)
+        own = _link_pieces(robot, link, colours, packages)
         if own and link in real:
             own = [Piece(link, points, triangles, own[0].colour) for points, triangles in real[link]]
         pieces += placed.get(link) or own
     joints = tuple(joint for group in config.flight.joint_groups for joint in group.joints)
     jets = config.flight.jets
-    return RobotScene(robot, tuple(pieces), tuple(jets.frames), joints, jets.max_thrust_n)
+    pushes = np.array(jets.axes or [DOWN] * len(jets.frames), dtype=float).reshape(-1, 3)
+    return RobotScene(robot, tuple(pieces), tuple(jets.frames), joints, pushes, float(np.max(jets.max_thrust_n)))
 
 
 def round_number(value: float) -> float:
@@ -174,21 +177,36 @@ def _materials(robot: RobotDescription) -> dict[str, tuple[float, float, float]]
     return {m.name: tuple(m.color.rgba[:3]) for m in read.materials if m.color is not None}
 
 
-def _link_pieces(robot: RobotDescription, link: str, colours: Mapping[str, tuple[float, float, float]]) -> list[Piece]:
-    """The link's own shapes; meshes that are not here are left out."""
+def _link_pieces(
+    robot: RobotDescription,
+    link: str,
+    colours: Mapping[str, tuple[float, float, float]],
+    packages: tuple[Path, ...],
+) -> list[Piece]:
+    """The link's own shapes and meshes; meshes that are not here are left out (`link_meshes.absent_meshes`)."""
     pieces = []
     for visual in robot.link(link).visuals:
-        shape = _primitive(visual.geometry)
-        if shape is None:
+        solid = _solid(robot, visual, packages)
+        if solid is None:
             continue
-        origin = np.eye(4) if visual.origin is None else visual.origin
         colour = PLAIN
         if visual.material is not None:
             own = visual.material.color
             colour = tuple(own.rgba[:3]) if own is not None else colours.get(visual.material.name, PLAIN)
-        points = np.asarray(shape.vertices) @ origin[:3, :3].T + origin[:3, 3]
-        pieces.append(Piece(link, points, np.asarray(shape.faces, dtype=np.int64), colour))
+        pieces.append(Piece(link, *solid, colour))
     return pieces
+
+
+def _solid(robot: RobotDescription, visual: Any, packages: tuple[Path, ...]) -> LinkMesh | None:
+    """What a visual looks like, in link axes."""
+    if visual.geometry is not None and visual.geometry.mesh is not None:
+        return read_mesh(visual, robot.directory, packages)
+    shape = _primitive(visual.geometry)
+    if shape is None:
+        return None
+    origin = np.eye(4) if visual.origin is None else visual.origin
+    points = np.asarray(shape.vertices) @ origin[:3, :3].T + origin[:3, 3]
+    return points, np.asarray(shape.faces, dtype=np.int64)
 
 
 def _primitive(geometry: Any) -> Any:

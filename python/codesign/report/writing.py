@@ -17,6 +17,7 @@ from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
 from codesign.report.figures import FigureData, drawing
 from codesign.report.figures.solids import hero
+from codesign.report.link_meshes import absence_in_words, absent_meshes, package_paths
 from codesign.report.page.encode import page_detail
 from codesign.report.page.html import render
 from codesign.report.reading import read_report_data, same_study, study_of
@@ -55,6 +56,7 @@ def write_report(
     if compute and current is not None:
         run = compute_details(current, run)
     details = load_details(directory)
+    run = with_absent_meshes(run, study)
     data = FigureData(run, details, current, load_validation(directory))
     shown = {key: page_detail(detail) for key, detail in _shown(run, details).items()}
     meanwhile: AbstractContextManager[list[Path]] = nullcontext([])
@@ -95,6 +97,17 @@ def compute_details(study: Any, run: ReportData) -> ReportData:
     with ThreadPoolExecutor(len(wanted)) as pool:  # a handful; the native chain releases the GIL
         evaluations = list(pool.map(compute, wanted))
     return replace(run, baseline=evaluations[-1]) if unknown else run
+
+
+def with_absent_meshes(run: ReportData, study: Any, packages: tuple[Path, ...] | None = None) -> ReportData:
+    """The run with a note on meshes of the robot that the pictures lack, which is logged too."""
+    if study is None:
+        return run
+    note = absence_in_words(absent_meshes(study.base_robot, package_paths() if packages is None else packages))
+    if not note:
+        return run
+    logger.warning(note)
+    return replace(run, notes=(*run.notes, note))
 
 
 def _picture(data: FigureData) -> bytes | None:

@@ -1,10 +1,13 @@
 """The page in a real browser: silent, alone, and everything can be clicked."""
 
+import csv
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 import synthetic_run
 from browser import open_browser, visit
@@ -15,11 +18,20 @@ from synthetic_details import detail
 
 STUDY = synthetic_run.Study()
 PEAK = detail(synthetic_run.evaluate(synthetic_run.BASELINE)).parts["jetpack_bracket"].von_mises.max() / 1e6
-POINT = """i => {
-  const plot = document.getElementById('front'), box = plot.getBoundingClientRect(), {xaxis, yaxis} = plot._fullLayout;
-  const f = designs[i].f;
-  return [box.left + xaxis._offset + xaxis.d2p(f[0]), box.top + yaxis._offset + yaxis.d2p(f[1])];
-}"""
+
+
+def marker(page: Any, design: int) -> Any:
+    """The mark of a best compromise in the chart, as it is drawn."""
+    best = page.evaluate("designs.map((d, i) => i).filter(i => designs[i].front)")
+    trace = page.locator("#front .scatterlayer .trace").filter(has=page.locator(f".point:nth-child({len(best)})"))
+    counts = [trace.nth(k).locator(".point").count() for k in range(trace.count())]
+    return trace.nth(counts.index(len(best))).locator(".point").nth(best.index(design))
+
+
+def middle(mark: Any) -> tuple[float, float]:
+    """Center of what is drawn [pixels]."""
+    box = mark.bounding_box()
+    return box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +54,7 @@ def test_the_chart_selects_on_click_rings_hovered_rows_and_changes_axes(browser,
         page.locator("#front").scroll_into_view_if_needed()
         page.wait_for_selector("#front .points path")
         wanted = page.evaluate("designs.findIndex((d, i) => d.front && i !== report.recommended)")
-        page.mouse.click(*page.evaluate(POINT, wanted))
+        page.mouse.click(*middle(marker(page, wanted)))
         page.wait_for_function("i => state.selected === i", arg=wanted)
         name = f"Design {page.evaluate('i => designs[i].id', wanted)}"
         assert page.locator("#card h2").inner_text() == name
@@ -51,10 +63,13 @@ def test_the_chart_selects_on_click_rings_hovered_rows_and_changes_axes(browser,
         row = page.locator("#designs-body tr").nth(2)
         row.scroll_into_view_if_needed()
         row.hover()
-        momentum = page.evaluate("i => designs[i].f[0]", int(row.get_attribute("data-design")))
-        page.wait_for_function("x => document.getElementById('front').data[6].x[0] === x", arg=momentum)
+        hovered = int(row.get_attribute("data-design"))
+        page.locator(f"#designs-body tr.hover[data-design='{hovered}']").wait_for()
+        page.wait_for_timeout(300)
+        ring = page.locator("#front .scatterlayer .point").last
+        assert middle(ring) == pytest.approx(middle(marker(page, hovered)), abs=1.0)
         page.select_option("#axis-y", "2")
-        assert page.evaluate("document.getElementById('front').layout.yaxis.title.text") == "Thrust (N)"
+        assert page.locator("#front .ytitle").text_content() == "Thrust (N)"
         page.select_option("#axis-x", "2")
         assert page.evaluate("[front.x, front.y]") == [2, 0]
 
@@ -79,14 +94,49 @@ def test_parts_and_flight_are_drawn_for_designs_with_details_and_pointed_to_from
         page.evaluate("select(report.baseline)")
         page.locator("#solid-0").scroll_into_view_if_needed()
         page.wait_for_function("document.querySelector('#solid-0 canvas') !== null")
-        peak = page.evaluate("Math.max(...document.getElementById('solid-0').data[0].text.map(Number))")
-        assert peak == float(f"{PEAK:.3g}")  # as people read it
+        assert page.locator("#parts .scale").first.inner_text().split()[-2:] == [f"{PEAK:.3g}", "MPa"]
+        assert (
+            len(Image.open(BytesIO(page.locator("#solid-0 canvas").first.screenshot())).convert("L").getcolors()) > 20
+        )
         page.locator("#history-2").scroll_into_view_if_needed()
         page.wait_for_function("document.querySelectorAll('#history-2 .scatterlayer .trace').length === 4")
         page.evaluate("select(designs.findIndex(d => d.status === 0 && !report.details[d.detail]))")
         assert "kept for Design" in page.locator("#parts-absent").inner_text()
         page.locator("#parts-absent [data-select]").first.click()
         assert page.evaluate("state.selected === report.recommended")
+
+
+def test_the_table_is_saved_as_csv(browser, address):
+    with visit(browser, address) as page:
+        with page.expect_download() as download:
+            page.click("[data-save=table]")
+        rows = list(csv.reader(Path(download.value.path()).read_text(encoding="utf-8-sig").splitlines()))
+        assert len(rows) == 1 + page.evaluate("designs.length")
+        assert rows[0][:3] == ["Status", "Design", "Bracket angle (°)"]
+        assert {row[0] for row in rows[1:]} == {"feasible", "infeasible", "failed"}
+
+
+def test_on_a_phone_the_menu_is_whole_and_the_table_says_that_it_continues(browser, address):
+    with visit(browser, address, width=390) as page:
+        assert page.locator("#designs-sideways").is_visible()
+        last = page.locator("nav a").last.bounding_box()
+        assert last["x"] + last["width"] < 390
+
+
+def test_on_paper_everything_is_drawn_and_charts_fill_their_columns(browser, address):
+    with visit(browser, address) as page:
+        page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+        page.emulate_media(media="print")
+        page.wait_for_function("document.querySelectorAll('.history .main-svg').length > 0")
+        sizes = page.evaluate(
+            "[...document.querySelectorAll('.js-plotly-plot')].map(n => "
+            "[n.querySelector('.main-svg')?.clientWidth, n.clientWidth])"
+        )
+        assert len(sizes) >= 6
+        assert all(drawn is None or drawn == pytest.approx(room, abs=2) for drawn, room in sizes)
+        assert page.locator("#parts .scale").first.is_visible()
+        page.evaluate("window.dispatchEvent(new Event('afterprint'))")
+        assert page.evaluate("document.documentElement.classList.contains('printing')") is False
 
 
 @pytest.mark.parametrize(("dark", "width"), [(True, 1280), (False, 380)])

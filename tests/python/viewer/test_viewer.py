@@ -7,11 +7,13 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import synthetic_run
 from browser import open_browser, visit
@@ -26,6 +28,8 @@ from codesign.report.link_meshes import link_meshes, package_paths
 from codesign.report.reading import read_report_data
 from codesign.report.scene import robot_scene
 from codesign.viewer import viewer as viewing
+from codesign.viewer.actor import quaternions, tinted_mesh
+from codesign.viewer.panel import joint_angles, legend
 
 STUDY = synthetic_run.Study()
 
@@ -69,25 +73,25 @@ def test_going_to_a_moment_moves_the_robot(viewer):
 
 def test_another_design_is_shown_on_request(viewer):
     viewer.show("original")
-    assert "angle: **15**" in viewer.facts
+    assert "Bracket angle: **15°**" in viewer.facts
+    assert "Bracket distance: **42 mm**" in viewer.facts
     viewer.show("recommended")
-    assert "angle: **15**" not in viewer.facts
+    assert "Bracket angle: **15°**" not in viewer.facts
 
 
 def test_the_world_passes_under_a_robot_that_the_camera_follows(viewer):
     viewer.show("recommended")
     viewer.go_to(12.0)
-    assert np.linalg.norm(viewer._world.position) > 0.5
-    viewer._follow.value = False
-    viewer._follow_or_not()
-    assert tuple(viewer._world.position) == (0.0, 0.0, 0.0)
-    viewer._follow.value = True
+    assert np.linalg.norm(viewer.world_position) > 0.5
+    viewer.follow(False)
+    assert viewer.world_position == (0.0, 0.0, 0.0)
+    viewer.follow(True)
     viewer.go_to(0.0)
-    assert tuple(viewer._world.position) == (0.0, 0.0, 0.0)
+    assert viewer.world_position == (0.0, 0.0, 0.0)
 
 
 def test_stress_colours_are_lit_like_paint_not_like_metal():
-    mesh = viewing._coloured(np.eye(3), np.array([[0, 1, 2]]), np.array([[1.0, 0.0, 0.0]] * 3))
+    mesh = tinted_mesh(np.eye(3), np.array([[0, 1, 2]]), np.array([[1.0, 0.0, 0.0]] * 3))
     data = mesh.export(file_type="glb")
     document = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
     assert document["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] == 0.0
@@ -113,9 +117,22 @@ def test_nothing_to_show_is_a_clear_error(tmp_path):
         viewing.view(bare, run_directory=tmp_path / "run", port=0)
 
 
+def test_the_panel_names_units_the_scale_of_the_colours_and_joint_angles():
+    shown = detail(synthetic_run.evaluate(synthetic_run.BASELINE))
+    assert "Jetpack bracket</span><span>5.3 MPa" in legend(shown).replace("5.30", "5.3")
+    assert joint_angles(shown, 3.0).startswith("j0: **0.0°**")
+
+
+def drawn(page: Any) -> np.ndarray:
+    """Pixels of the 3-D scene alone: without the panel at its right and the time line at its bottom."""
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    picture = np.asarray(Image.open(BytesIO(page.locator("canvas").first.screenshot())).convert("RGB"), dtype=int)
+    return picture[: int(0.7 * picture.shape[0]), : int(0.55 * picture.shape[1])]
+
+
 def test_quaternions_turn_as_the_matrices_do():
     c, s = np.cos(0.3), np.sin(0.3)
-    turned = viewing.quaternions(np.array([np.eye(3), [[c, -s, 0], [s, c, 0], [0, 0, 1]]]))
+    turned = quaternions(np.array([np.eye(3), [[c, -s, 0], [s, c, 0], [0, 0, 1]]]))
     assert np.allclose(turned, [[1, 0, 0, 0], [np.cos(0.15), 0, 0, np.sin(0.15)]])
 
 
@@ -126,7 +143,8 @@ def test_the_browser_shows_the_robot_and_plays_the_flight(browser, viewer):
         canvas = page.locator("canvas").first
         canvas.wait_for()
         page.wait_for_timeout(1500)
-        before = page.screenshot()
+        before = drawn(page)
+        assert len(np.unique(before.reshape(-1, 3), axis=0)) > 50  # a shaded robot, not an empty canvas
         page.get_by_role("button", name="Play").click()
         page.get_by_role("button", name="Pause").wait_for()
         page.wait_for_timeout(2500)
@@ -135,7 +153,7 @@ def test_the_browser_shows_the_robot_and_plays_the_flight(browser, viewer):
         assert 0.5 < viewer.time < 30.0
         assert not viewer.playing
         page.wait_for_timeout(500)
-        assert page.screenshot() != before
+        assert (np.abs(drawn(page) - before).max(axis=2) > 20).mean() > 0.002
 
 
 def test_a_recording_plays_without_a_server(browser, run_directory, tmp_path):
@@ -145,9 +163,10 @@ def test_a_recording_plays_without_a_server(browser, run_directory, tmp_path):
         canvas = page.locator("canvas").first
         canvas.wait_for()
         page.wait_for_timeout(2000)
-        early = page.screenshot()
+        early = drawn(page)
+        assert len(np.unique(early.reshape(-1, 3), axis=0)) > 50
         page.wait_for_timeout(3000)
-        assert page.screenshot() != early
+        assert (np.abs(drawn(page) - early).max(axis=2) > 20).mean() > 0.002
 
 
 def test_package_paths_follow_the_usual_variables(tmp_path):

@@ -167,18 +167,21 @@ def robot_bodies(
         pose = poses[piece.link]
         colour = style.PART if piece.part is not None else tuple(0.45 + 0.55 * c for c in piece.colour)
         bodies.append(Body(piece.points @ pose[:3, :3].T + pose[:3, 3], piece.triangles, np.array(colour)))
-    for jet, thrust in zip(scene.jets, [] if thrusts is None else thrusts, strict=False):
-        bodies.append(_flame(poses[jet], float(thrust) / scene.max_thrust, scene.size))
+    for jet, push, thrust in zip(scene.jets, scene.pushes, [] if thrusts is None else thrusts, strict=False):
+        bodies.append(_flame(poses[jet], -push, float(thrust) / scene.max_thrust, scene.size))
     return bodies
 
 
-def _flame(pose: Matrix, share: float, size: float) -> Body:
-    """A cone along the jet's exhaust, the frame's +z, as long as its share of the largest thrust."""
+def _flame(pose: Matrix, exhaust: Array, share: float, size: float) -> Body:
+    """A cone along a unit vector of the jet's frame, as long as its share of the largest thrust."""
     from trimesh import creation
+    from trimesh.geometry import align_vectors
 
     length = size * max(FLAME_LENGTH * share, 1e-3)
     cone = creation.cone(radius=FLAME_RADIUS * size, height=length, sections=20)
-    points = np.asarray(cone.vertices) @ pose[:3, :3].T + pose[:3, 3]
+    align: Any = align_vectors
+    turn = pose[:3, :3] @ align([0.0, 0.0, 1.0], exhaust)[:3, :3]
+    points = np.asarray(cone.vertices) @ turn.T + pose[:3, 3]
     fade = np.clip(np.asarray(cone.vertices)[:, 2:] / length, 0.0, 1.0)
     return Body(
         points,

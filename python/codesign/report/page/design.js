@@ -14,7 +14,7 @@ function card(i) {
       `<div class="track" role="img" aria-label="between ${plain(v.min)} and ${plain(v.max)}">${was}<i style="left:${place(d.x[k])}%"></i></div></div>`;
   });
   const objectives = report.objectives.map((o, k) =>
-    `<div class="row"><span>${escaped(o.label)}</span><b>${withUnit(number(d.f[k]), o.unit)}<span class="delta ${sense(change(d, k))}">${percent(change(d, k))}</span></b></div>`);
+    `<div class="row"><span>${escaped(o.label)}</span><b>${withUnit(number(d.f[k]), o.unit)}<span class="delta">${percent(change(d, k))}</span></b></div>`);
   const constraint = (c, k) => {
     const verdict = below(c, d.c[k]) ? '<span class="bad"> overlap</span>' : !known(d.c[k]) || !c.rule ? '' : d.g[k] > 0 ? '<span class="bad"> violated</span>' : '<span class="good"> ✓</span>';
     return `<div class="row" title="${escaped(c.meaning)}"><span>${escaped(c.label)} <small>${escaped(c.rule)}</small></span><b>${withUnit(number(d.c[k], 3), c.unit)}${verdict}</b></div>`;
@@ -87,7 +87,7 @@ function eye(node) {
 }
 
 /** Sides of the part's box for plotly, scaled so that the part stays inside the view however it is turned. */
-const DIAGONAL = 1.9;
+const DIAGONAL = 2.4;
 function ratio(...coordinates) {
   const sides = coordinates.map(values => values.reduce((high, v) => Math.max(high, v), -Infinity) - values.reduce((low, v) => Math.min(low, v), Infinity));
   const [x, y, z] = sides.map(side => DIAGONAL * side / (Math.hypot(...sides) || 1));

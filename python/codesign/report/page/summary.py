@@ -96,8 +96,8 @@ def _build(run: ReportData) -> str:
     ]
     paragraphs = "".join(f"<p>{escape(text.strip())}</p>" for text in said if text.strip())
     return (
-        f"{box}<div><h2>{title}</h2>{points}{paragraphs}</div>"
-        f'<dl class="values">{values}</dl><div class="command"><code>{escape(command)}</code>'
+        f'{box}<h2>{title}</h2>{points}<dl class="values">{values}</dl><div class="because">{paragraphs}</div>'
+        f'<div class="command"><code>{escape(command)}</code>'
         f'<button type="button" class="copy" data-copy="{escape(command)}">Copy</button></div></div>'
     )
 
