@@ -17,6 +17,9 @@ RUN_DIR := $(RUN_DIR)
 CXX_SOURCES := $(shell find cpp cmake -type f) CMakeLists.txt
 PYTEST := $(BIN)/python -m pytest -m 'not slow' -n $(JOBS) --dist loadfile
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
+# Paths below this folder count as relative ones, so that clones share what any of them has compiled.
+export CCACHE_BASEDIR := $(CURDIR)
+export CCACHE_NOHASHDIR := 1
 export BIN
 
 help:

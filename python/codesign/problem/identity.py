@@ -25,6 +25,11 @@ class Identity:
         """16 hexadecimal digits; equal for equal identities only."""
         return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:16]
 
+    @property
+    def program(self) -> Identity:
+        """The part that does not depend on a study: the engine and the libraries."""
+        return Identity({name: value for name, value in self.sources.items() if name == "engine"}, self.libraries)
+
     def document(self) -> dict[str, Any]:
         """As stored: JSON values only."""
         return {"sources": dict(self.sources), "libraries": dict(self.libraries)}

@@ -222,6 +222,8 @@ def make_executor(study: Problem, resources: Resources, cache: Path | str | None
 
 def _drive(study: Problem, settings: Settings, store: RunStore, cache: Path | str | None, resources: Resources) -> None:
     designs = SqliteCache(cache) if cache is not None else None
+    if designs is not None:
+        designs.register(study.identity.program)
     plan = settings.plan(study.space, study.objectives)
     try:
         loop = Loop(study, plan, store, designs, resources.get("progress"))

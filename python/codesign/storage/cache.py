@@ -14,10 +14,15 @@ import time
 from pathlib import Path
 from typing import Any
 
+from codesign.problem.identity import Identity
+
 logger = logging.getLogger(__name__)
 
 BUSY_TIMEOUT = 30.0  # s to wait for another process's write
-SCHEMA = "CREATE TABLE IF NOT EXISTS entries (key TEXT PRIMARY KEY, value TEXT NOT NULL, stored REAL NOT NULL)"
+SCHEMA = """
+CREATE TABLE IF NOT EXISTS entries (key TEXT PRIMARY KEY, value TEXT NOT NULL, stored REAL NOT NULL);
+CREATE TABLE IF NOT EXISTS programs (hash TEXT PRIMARY KEY, identity TEXT NOT NULL, used REAL NOT NULL);
+"""
 
 
 class MemoryCache:
@@ -47,7 +52,7 @@ class SqliteCache:
             connection = sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
             connection.execute("PRAGMA journal_mode=WAL")
             connection.execute("PRAGMA synchronous=NORMAL")  # a power cut may lose entries, not damage the file
-            connection.execute(SCHEMA)
+            connection.executescript(SCHEMA)
             self._connection = connection
         except (OSError, sqlite3.Error) as error:
             self._disable(error)
@@ -78,6 +83,25 @@ class SqliteCache:
             )
         except sqlite3.Error as error:
             self._disable(error)
+
+    def register(self, program: Identity) -> None:
+        """Notes a program that uses the cache, and says once in what it differs from the one that used it before."""
+        if self._connection is None:
+            return
+        try:
+            rows = self._connection.execute("SELECT hash, identity FROM programs ORDER BY used DESC").fetchall()
+            self._connection.execute(
+                "INSERT OR REPLACE INTO programs (hash, identity, used) VALUES (?, ?, ?)",
+                (program.hash, json.dumps(program.document()), time.time()),
+            )
+        except sqlite3.Error as error:
+            self._disable(error)
+            return
+        if rows and program.hash not in [row[0] for row in rows]:
+            before = Identity.from_document(json.loads(rows[0][1]))
+            logger.warning(
+                "cache %s: results of another program are not used: %s", self.path, before.differences(program)
+            )
 
     def close(self) -> None:
         """Ends the use of the file; later calls find nothing and store nothing."""

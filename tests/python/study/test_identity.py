@@ -107,6 +107,19 @@ def test_a_search_is_not_continued_with_another_optimiser(tmp_path, pretend):
         resume(tmp_path, study=fake, evaluations=16)
 
 
+def test_cached_rows_of_another_library_are_not_used_and_that_is_said_once(tmp_path, caplog):
+    old, new = (study(libraries={"manifold3d": version}) for version in ("3.0.0", "3.5.4"))
+    cache = tmp_path / "cache.sqlite"
+    cached = []
+    for number, fake in enumerate((old, old, new, new, old)):
+        run = optimize(fake, out=tmp_path / str(number), generations=1, cache=cache, workers=1)
+        cached.append(sum(record.cached for record in run.search_records))
+    assert cached == [0, 8, 0, 8, 8]
+    said = [message for message in caplog.messages if "another program" in message]
+    assert len(said) == 1
+    assert said[0].endswith("results of another program are not used: manifold3d was 3.0.0, is 3.5.4")
+
+
 def test_a_worker_with_another_library_is_refused(tmp_path):
     there = study(libraries={"manifold3d": "3.5.4"})
     here = StudyRef(there.source, "another", there.loader, Identity({"source": there.hash}, {"manifold3d": "3.0.0"}))
