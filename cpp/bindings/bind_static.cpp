@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings/bindings.hpp"
+#include "fem/boundary/smooth_patch.hpp"
 #include "fem/elasticity/static_solver.hpp"
 
 namespace py = pybind11;
@@ -50,6 +51,18 @@ void bind_selection(py::module_& m) {
         "Rows of mesh.boundary that a selection holds, sorted.");
   m.def("selected_nodes", &selected_nodes, "mesh"_a, "selection"_a,
         "Nodes that a selection holds, those of its faces included, sorted.");
+  py::class_<SmoothPatch>(m, "SmoothPatch", "A piece of one smooth face of a surface.")
+      .def_property_readonly(
+          "type", [](const SmoothPatch& patch) { return surface_type_name(patch.type); },
+          "plane, cylinder, cone, sphere or free")
+      .def_readonly("triangles", &SmoothPatch::triangles, "sorted");
+  m.def("nearest_triangle", &nearest_triangle, "surface"_a, "point"_a,
+        "Index of the triangle of a SurfaceMesh nearest to a point, m.");
+  m.def("smooth_patch", &smooth_patch, "surface"_a, "start"_a, "max_bend"_a,
+        "The plane, cylinder, cone, sphere or free face that a triangle of a SurfaceMesh belongs "
+        "to.");
+  m.def("boundary_surface", &boundary_surface, "mesh"_a,
+        "The boundary of a TetMesh as a SurfaceMesh of flat triangles.");
   m.def("triangles_near", &triangles_near, "mesh"_a, "point"_a, "max_bend"_a);
   m.def("triangles_in_box", &triangles_in_box, "mesh"_a, "lower"_a, "upper"_a);
   m.def("triangles_with_normal", &triangles_with_normal, "mesh"_a, "normal"_a, "angle"_a);
@@ -87,9 +100,19 @@ void bind_result(py::module_& m) {
       .value("automatic", LinearSolver::automatic)
       .value("direct", LinearSolver::direct)
       .value("iterative", LinearSolver::iterative);
+  py::enum_<ExclusionRule>(m, "ExclusionRule")
+      .value("local", ExclusionRule::local)
+      .value("published", ExclusionRule::published);
+  py::class_<LeftOut>(m, "LeftOut", "Largest von Mises stress that the exclusion leaves out.")
+      .def_readonly("stress", &LeftOut::stress, "Pa; 0: nothing is left out")
+      .def_readonly("position", &LeftOut::position, "(3) m")
+      .def_readonly("border_distance", &LeftOut::border_distance,
+                    "m, from the nearest border of a clamp or load");
   py::class_<StaticSettings>(m, "StaticSettings")
       .def(py::init<>())
-      .def_readwrite("exclusion_distance", &StaticSettings::exclusion_distance)
+      .def_readwrite("exclusion", &StaticSettings::exclusion)
+      .def_readwrite("exclusion_distance", &StaticSettings::exclusion_distance,
+                     "m, everywhere; None: that of the rule")
       .def_readwrite("stress_volume", &StaticSettings::stress_volume)
       .def_readwrite("copies", &StaticSettings::copies)
       .def_readwrite("residual_tolerance", &StaticSettings::residual_tolerance)
@@ -113,7 +136,14 @@ void bind_result(py::module_& m) {
       .def_readonly("element_error", &StaticResult::element_error,
                     "(m) Pa, difference of element and recovered stress")
       .def_readonly("stress_50", &StaticResult::stress_50, "Pa")
-      .def_readonly("safety_factor", &StaticResult::safety_factor)
+      .def_readonly("safety_factor", &StaticResult::safety_factor,
+                    "yield strength over peak_stress; inf if nothing is stressed")
+      .def_readonly("left_out", &StaticResult::left_out)
+      .def_readonly("exclusion_smallest", &StaticResult::exclusion_smallest,
+                    "m, of the distances kept from borders")
+      .def_readonly("exclusion_largest", &StaticResult::exclusion_largest, "m")
+      .def_property_readonly("peak_resolved", &StaticResult::peak_resolved,
+                             "False if the estimated error exceeds half of the peak stress")
       .def_readonly("residual", &StaticResult::residual, "relative, over the free components")
       .def_readonly("equations", &StaticResult::equations)
       .def_readonly("iterations", &StaticResult::iterations,

@@ -2,6 +2,7 @@
 
 #include "bindings/bindings.hpp"
 #include "errors.hpp"
+#include "fem/model_error.hpp"
 
 namespace py = pybind11;
 
@@ -24,6 +25,8 @@ PYBIND11_MODULE(_core, m) {
       raise("UrdfError", e);
     } catch (const codesign::MeshError& e) {
       raise("MeshError", e);
+    } catch (const codesign::ModelError& e) {
+      raise("ModelError", e);
     } catch (const codesign::SolverError& e) {
       raise("SolverError", e);
     } catch (const codesign::Error& e) {

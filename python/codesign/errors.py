@@ -31,6 +31,10 @@ class MeshError(CodesignError):
     """A surface or volume mesh that is open, inverted, degenerate, too large, or could not be made."""
 
 
+class ModelError(CodesignError, ValueError):
+    """Supports or loads that make no sense for a part; the message names what, why and the remedy."""
+
+
 class SolverError(CodesignError):
     """A linear system that is singular or whose solution misses the residual tolerance."""
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "fem/mesh/tet10.hpp"
+#include "fem/model_error.hpp"
 
 namespace codesign::fem {
 
@@ -61,7 +62,9 @@ struct LoadAdder {
       throw std::invalid_argument("a Force acts on faces or on nodes, not on both at once");
     }
     const std::vector<int> triangles = selected_triangles(mesh, load.where);
-    add_traction(mesh, triangles, load.force / face_area(mesh, triangles), f);
+    const double area = face_area(mesh, triangles);
+    if (!(area > 0)) throw ModelError("the faces of a force have no area to spread it over");
+    add_traction(mesh, triangles, load.force / area, f);
   }
 
   void operator()(const Traction& load) const {
@@ -133,7 +136,7 @@ void LoadAdder::operator()(const AffineTraction& load) const {
     first += w * r;
     second += w * r * r.transpose();
   });
-  if (!(area > 0)) throw std::invalid_argument("the region of a load contains no surface");
+  if (!(area > 0)) throw ModelError("the region of a load contains no surface");
 
   // Solved about the centroid with lengths scaled, where the system is well conditioned.
   const Eigen::Vector3d centroid = first / area;

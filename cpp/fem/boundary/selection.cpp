@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 
-#include "fem/surface/distance.hpp"
+#include "fem/boundary/smooth_patch.hpp"
+#include "fem/model_error.hpp"
 
 namespace codesign::fem {
 
@@ -19,8 +19,8 @@ int face_index(const TetMesh& mesh, const std::string& name) {
   }
   std::string known;
   for (const std::string& other : mesh.face_names) known += " '" + other + "'";
-  throw std::invalid_argument("unknown face '" + name + "'; the mesh has" +
-                              (known.empty() ? " no named face" : known));
+  throw ModelError("unknown face '" + name + "'; the mesh has" +
+                   (known.empty() ? " no named face" : known));
 }
 
 void check_index(int index, Eigen::Index size, const char* what) {
@@ -65,7 +65,7 @@ Eigen::Vector3d flat_normal(const TetMesh& mesh, int triangle) {
 std::vector<int> selected_triangles(const TetMesh& mesh, const Selection& selection) {
   std::vector<int> result = triangles_or_empty(mesh, selection);
   if (result.empty()) {
-    throw std::invalid_argument(describe(selection) + " selects no boundary triangle");
+    throw ModelError(describe(selection) + " selects no boundary triangle");
   }
   return result;
 }
@@ -77,49 +77,18 @@ std::vector<int> selected_nodes(const TetMesh& mesh, const Selection& selection)
     for (int k = 0; k < 6; ++k) result.push_back(mesh.boundary(t, k));
   }
   sort_unique(result);
-  if (result.empty()) throw std::invalid_argument(describe(selection) + " selects no node");
+  if (result.empty()) throw ModelError(describe(selection) + " selects no node");
   return result;
+}
+
+SurfaceMesh boundary_surface(const TetMesh& mesh) {
+  return {mesh.nodes, mesh.boundary.leftCols<3>(), mesh.boundary_face, mesh.face_names};
 }
 
 std::vector<int> triangles_near(const TetMesh& mesh, const Eigen::Vector3d& point,
                                 double max_bend) {
-  const int count = static_cast<int>(mesh.boundary.rows());
-  if (count == 0) throw std::invalid_argument("the mesh has no boundary triangles");
-  int nearest = 0;
-  double best = std::numeric_limits<double>::infinity();
-  std::map<std::pair<int, int>, std::vector<int>> edge_triangles;
-  for (int t = 0; t < count; ++t) {
-    const double d = squared_distance_to_triangle(point, corner(mesh, t, 0), corner(mesh, t, 1),
-                                                  corner(mesh, t, 2));
-    if (d < best) {
-      best = d;
-      nearest = t;
-    }
-    for (int k = 0; k < 3; ++k) {
-      const int a = mesh.boundary(t, k), b = mesh.boundary(t, (k + 1) % 3);
-      edge_triangles[std::minmax(a, b)].push_back(t);
-    }
-  }
-  const double min_cosine = std::cos(max_bend);
-  std::vector<char> reached(static_cast<std::size_t>(count), 0);
-  std::vector<int> queue{nearest};
-  reached[static_cast<std::size_t>(nearest)] = 1;
-  for (std::size_t i = 0; i < queue.size(); ++i) {
-    const int t = queue[i];
-    for (int k = 0; k < 3; ++k) {
-      const int a = mesh.boundary(t, k), b = mesh.boundary(t, (k + 1) % 3);
-      for (const int other : edge_triangles[std::minmax(a, b)]) {
-        const std::size_t o = static_cast<std::size_t>(other);
-        if (reached[o] || mesh.boundary_face[o] != mesh.boundary_face[static_cast<std::size_t>(t)])
-          continue;
-        if (flat_normal(mesh, t).dot(flat_normal(mesh, other)) < min_cosine) continue;
-        reached[o] = 1;
-        queue.push_back(other);
-      }
-    }
-  }
-  std::sort(queue.begin(), queue.end());
-  return queue;
+  const SurfaceMesh surface = boundary_surface(mesh);
+  return smooth_patch(surface, nearest_triangle(surface, point), max_bend).triangles;
 }
 
 std::vector<int> triangles_in_box(const TetMesh& mesh, const Eigen::Vector3d& lower,

@@ -16,15 +16,17 @@ struct Selection {
   std::vector<int> nodes;
 };
 
-// Rows of TetMesh::boundary, sorted. Throws std::invalid_argument for an unknown face (the message
-// lists the known ones), an index out of range, or when nothing is selected.
+// Rows of TetMesh::boundary, sorted. Throws ModelError for an unknown face (the message lists the
+// known ones) or when nothing is selected, std::invalid_argument for an index out of range.
 std::vector<int> selected_triangles(const TetMesh& mesh, const Selection& selection);
 
 // All nodes of the selected triangles and the selected nodes, sorted.
 std::vector<int> selected_nodes(const TetMesh& mesh, const Selection& selection);
 
-// The smooth piece of surface nearest to a point: the nearest triangle and what is connected to it
-// within the same named face without a bend of more than max_bend (rad).
+// The boundary as a surface of flat triangles, over all nodes of the mesh.
+SurfaceMesh boundary_surface(const TetMesh& mesh);
+
+// The smooth face nearest to a point, see smooth_patch.hpp.
 std::vector<int> triangles_near(const TetMesh& mesh, const Eigen::Vector3d& point, double max_bend);
 
 // Triangles with all six nodes in the box.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fem/model_error.hpp"
+
 namespace codesign::fem {
 
 namespace {
@@ -20,6 +22,22 @@ std::vector<int> support_nodes(const TetMesh& mesh, const Support& support) {
         "nodes");
   }
   return support.where.nodes;
+}
+
+// Boundary triangles of the supports that are symmetry planes, or of those that are not.
+std::vector<int> held_triangles(const TetMesh& mesh, const std::vector<Support>& supports,
+                                bool symmetry) {
+  std::vector<int> result;
+  for (const Support& support : supports) {
+    if (support.symmetry != symmetry) continue;
+    if (support.where.faces.empty() && support.where.triangles.empty()) continue;
+    const Selection faces_only{support.where.faces, support.where.triangles, {}};
+    const std::vector<int> triangles = selected_triangles(mesh, faces_only);
+    result.insert(result.end(), triangles.begin(), triangles.end());
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
 }
 
 }  // namespace
@@ -48,8 +66,8 @@ Constraints constrain(const TetMesh& mesh, const std::vector<Support>& supports)
         const double value = rows == 0 ? 0.0 : support.displacement(row, a);
         double& held = c.displacement[static_cast<Eigen::Index>(dof)];
         if (c.support[dof] >= 0 && std::abs(held - value) > 1e-14 * std::abs(held + value)) {
-          throw std::invalid_argument("two supports prescribe different displacements of node " +
-                                      std::to_string(nodes[i]));
+          throw ModelError("two supports prescribe different displacements of node " +
+                           std::to_string(nodes[i]));
         }
         if (c.support[dof] < 0) c.support[dof] = static_cast<int>(s);
         c.fixed[dof] = 1;
@@ -61,17 +79,11 @@ Constraints constrain(const TetMesh& mesh, const std::vector<Support>& supports)
 }
 
 std::vector<int> clamped_triangles(const TetMesh& mesh, const std::vector<Support>& supports) {
-  std::vector<int> result;
-  for (const Support& support : supports) {
-    if (support.symmetry) continue;
-    if (support.where.faces.empty() && support.where.triangles.empty()) continue;
-    const Selection faces_only{support.where.faces, support.where.triangles, {}};
-    const std::vector<int> triangles = selected_triangles(mesh, faces_only);
-    result.insert(result.end(), triangles.begin(), triangles.end());
-  }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
+  return held_triangles(mesh, supports, false);
+}
+
+std::vector<int> symmetry_triangles(const TetMesh& mesh, const std::vector<Support>& supports) {
+  return held_triangles(mesh, supports, true);
 }
 
 }  // namespace codesign::fem

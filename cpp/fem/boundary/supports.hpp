@@ -28,12 +28,15 @@ struct Constraints {
   Eigen::VectorXd displacement;  // (3 n) m, zero where free
 };
 
-// Nodes that belong to no element are held at zero. Throws std::invalid_argument for an empty
-// selection or two different prescribed values of one component.
+// Nodes that belong to no element are held at zero. Throws ModelError for an empty selection or two
+// different prescribed values of one component.
 Constraints constrain(const TetMesh& mesh, const std::vector<Support>& supports);
 
 // Boundary triangles selected by supports that are no symmetry planes: the constrained faces, from
 // which the peak stress keeps its distance. Sorted.
 std::vector<int> clamped_triangles(const TetMesh& mesh, const std::vector<Support>& supports);
+
+// Boundary triangles of symmetry planes. Sorted.
+std::vector<int> symmetry_triangles(const TetMesh& mesh, const std::vector<Support>& supports);
 
 }  // namespace codesign::fem

@@ -12,6 +12,7 @@
 #include "fem/elasticity/two_level.hpp"
 #include "fem/la/cholesky.hpp"
 #include "fem/la/ordering.hpp"
+#include "fem/model_error.hpp"
 #include "fem/stress/recovery.hpp"
 
 namespace codesign::fem {
@@ -35,7 +36,8 @@ void check_mesh(const TetMesh& mesh) {
 }
 
 void check_settings(const StaticSettings& s) {
-  if (!(s.exclusion_distance >= 0)) throw std::invalid_argument("exclusion_distance must be >= 0");
+  if (!(s.exclusion_distance.value_or(0.0) >= 0))
+    throw std::invalid_argument("exclusion_distance must be >= 0");
   if (!(s.stress_volume > 0)) throw std::invalid_argument("stress_volume must be > 0");
   if (s.copies < 1) throw std::invalid_argument("copies must be >= 1");
   if (!(s.residual_tolerance > 0)) throw std::invalid_argument("residual_tolerance must be > 0");
@@ -121,17 +123,61 @@ struct StaticSystem::Data {
     }
   }
 
+  // A load that no free component feels, or loads that cancel, would silently do nothing.
+  void require_effect(const std::vector<Load>& loads, const Eigen::VectorXd& total) const {
+    constexpr double kRoundOff = 1e-12;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const Eigen::VectorXd load =
+          loads.size() == 1 ? total : load_vector(mesh, material, {loads[i]});
+      const double size = load.cwiseAbs().maxCoeff();
+      largest = std::max(largest, size);
+      const Eigen::VectorXd felt = gather(load);
+      if (size == 0.0 || (felt.size() > 0 && felt.cwiseAbs().maxCoeff() > kRoundOff * size)) {
+        continue;
+      }
+      throw ModelError("load " + std::to_string(i + 1) + " of " + std::to_string(loads.size()) +
+                       " acts on held faces only and has no effect: move it off the supports, or "
+                       "hold less");
+    }
+    if (total.cwiseAbs().maxCoeff() <= kRoundOff * largest &&
+        constraints.displacement.isZero(0.0)) {
+      throw ModelError(loads.empty() ? "nothing acts on the part: give a load, or a displacement "
+                                       "of a support"
+                                     : "the loads add up to nothing: no node is loaded");
+    }
+  }
+
+  // What decides the safety factor, and its companion in a volume.
+  PeakStress read_peak(const PointStresses& points, const ExclusionZone& zone,
+                       StaticResult& r) const {
+    const double volume = settings.stress_volume / settings.copies;
+    PeakStress peak = codesign::fem::peak_stress(mesh, r.stress, zone);
+    if (settings.exclusion == ExclusionRule::published) {
+      r.stress_50 = stress_of_volume(mesh, points, clamped, zone.largest(), volume);
+      return peak;
+    }
+    const VolumeStress inside = volume_stress(mesh, r.stress, points, zone, volume);
+    r.stress_50 = inside.exceeded;
+    return inside.largest.value > peak.value ? inside.largest : peak;
+  }
+
   void read_stress(const std::vector<Load>& loads, const Eigen::VectorXd& u,
                    StaticResult& r) const {
     const PointStresses points = point_stresses(mesh, material, u);
     r.stress = recover_stress(mesh, points);
     r.von_mises = codesign::fem::von_mises(r.stress);
-    const double distance = settings.exclusion_distance;
-    r.stress_50 =
-        stress_of_volume(mesh, points, clamped, distance, settings.stress_volume / settings.copies);
+    const ExclusionZone zone(
+        mesh, {clamped, symmetry_triangles(mesh, supports), loaded_triangles(mesh, loads)},
+        {settings.exclusion, settings.exclusion_distance});
+    const PeakStress peak = read_peak(points, zone, r);
+    const PeakStress hidden = stress_left_out(mesh, r.stress, zone);
+    if (hidden.triangle >= 0) {
+      r.left_out = {hidden.value, hidden.position, zone.border_distance(hidden.position)};
+    }
+    r.exclusion_smallest = zone.smallest();
+    r.exclusion_largest = zone.largest();
     RecoveryError recovery = recovery_error(mesh, material, u, r.stress);
-    const PeakExclusion exclusion{clamped, loaded_triangles(mesh, loads), distance};
-    const PeakStress peak = codesign::fem::peak_stress(mesh, r.stress, exclusion);
     r.stress_error = peak_stress_error(mesh, points, recovery, peak);
     r.energy_error = recovery.relative_energy;
     r.element_error = std::move(recovery.element);
@@ -177,6 +223,7 @@ const TetMesh& StaticSystem::mesh() const { return data_->mesh; }
 StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
   const Data& d = *data_;
   const Eigen::VectorXd load = load_vector(d.mesh, d.material, loads);
+  d.require_effect(loads, load);
   StaticResult r;
   Eigen::VectorXd internal;
   const Eigen::VectorXd u = d.displace(load, internal, r.residual, r.iterations);
@@ -200,11 +247,12 @@ NaturalModes StaticSystem::natural_modes(int count) const {
 
 Points StaticSystem::displacement(const std::vector<Load>& loads) const {
   const Data& d = *data_;
+  const Eigen::VectorXd load = load_vector(d.mesh, d.material, loads);
+  d.require_effect(loads, load);
   Eigen::VectorXd internal;
   double residual = 0.0;
   int iterations = 0;
-  const Eigen::VectorXd u =
-      d.displace(load_vector(d.mesh, d.material, loads), internal, residual, iterations);
+  const Eigen::VectorXd u = d.displace(load, internal, residual, iterations);
   return Eigen::Map<const Points>(u.data(), d.mesh.nodes.rows(), 3);
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "fem/boundary/loads.hpp"
@@ -26,8 +27,9 @@ namespace codesign::fem {
 enum class LinearSolver { automatic, direct, iterative };
 
 struct StaticSettings {
-  double exclusion_distance = 3e-3;  // m, see PeakExclusion
-  double stress_volume = 50e-9;      // m³ of the whole part, see StaticResult::stress_50
+  ExclusionRule exclusion = ExclusionRule::local;
+  std::optional<double> exclusion_distance;  // m, see ExclusionSettings
+  double stress_volume = 50e-9;              // m³ of the whole part, see StaticResult::stress_50
   int copies = 1;                    // 2 for a half model: work and stress_volume count the part
   double residual_tolerance = 1e-9;  // relative
   LinearSolver solver = LinearSolver::automatic;
@@ -40,6 +42,13 @@ struct StaticModel {
   std::vector<Support> supports;
   std::vector<Load> loads;
   StaticSettings settings;
+};
+
+// The largest von Mises stress among what the exclusion leaves out.
+struct LeftOut {
+  double stress = 0.0;  // Pa; 0: nothing is left out
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  double border_distance = 0.0;  // m, from the nearest border of a clamp or load
 };
 
 struct StaticResult {
@@ -57,11 +66,17 @@ struct StaticResult {
   Eigen::VectorXd element_error;  // (m) Pa, see RecoveryError
   Eigen::Vector3d peak_position = Eigen::Vector3d::Zero();
   double stress_50 = 0.0;      // Pa, von Mises exceeded in stress_volume
-  double safety_factor = 0.0;  // yield strength / peak_stress
-  double residual = 0.0;       // |K u - f| over the free components, relative to the larger of the
-                               // load and the forces that flow through the nodes
+  double safety_factor = 0.0;  // yield strength / peak_stress; infinite if nothing is stressed
+  LeftOut left_out;
+  double exclusion_smallest = 0.0, exclusion_largest = 0.0;  // m, of the distances kept
+  double residual = 0.0;  // |K u - f| over the free components, relative to the larger of the
+                          // load and the forces that flow through the nodes
   int equations = 0;
   int iterations = 0;  // of conjugate gradients; 0: solved by the factor
+
+  // False if the estimated error exceeds half of the peak stress: the elements there are too coarse
+  // to tell it.
+  bool peak_resolved() const { return stress_error <= 0.5 * peak_stress; }
 };
 
 // A model ordered, assembled and factorised once, for any number of load cases.
@@ -75,7 +90,8 @@ class StaticSystem {
   StaticSystem(StaticSystem&&) noexcept;
   StaticSystem& operator=(StaticSystem&&) noexcept;
 
-  // Throws SolverError if the residual misses the tolerance.
+  // Throws SolverError if the residual misses the tolerance, ModelError if nothing acts on the part
+  // or a load acts on held components only.
   StaticResult solve(const std::vector<Load>& loads) const;
 
   // The lowest modes on the supports, from the same factor if there is one. Throws SolverError,

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <utility>
 
 #include "fem/mesh/tet10.hpp"
-#include "fem/stress/surface_distance.hpp"
+#include "fem/model_error.hpp"
 
 namespace codesign::fem {
 
@@ -49,64 +49,116 @@ std::vector<Sample> lattice() {
   return samples;
 }
 
-}  // namespace
-
-PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExclusion& exclusion) {
-  static const std::vector<Sample> samples = lattice();
-  const double distance = exclusion.distance;
-  const SurfaceDistance clamp(mesh, exclusion.clamped);
-  const SurfaceDistance border = SurfaceDistance::to_border(mesh, exclusion.loaded);
+// Boundary triangles by the upper bound of their stress, largest first.
+std::vector<std::pair<double, int>> by_bound(const TetMesh& mesh, const Stresses& nodal) {
   std::vector<std::pair<double, int>> faces;
   for (int t = 0; t < mesh.boundary.rows(); ++t) {
-    const bool clamped = std::binary_search(exclusion.clamped.begin(), exclusion.clamped.end(), t);
-    if (clamped && distance > 0) continue;
     faces.emplace_back(upper_bound(face_stress(mesh, nodal, t)), t);
   }
   std::sort(faces.begin(), faces.end(), std::greater<>());
+  return faces;
+}
 
+// The largest sample over the faces outside the zone (left_out = false) or inside it.
+PeakStress largest_sample(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone,
+                          bool left_out) {
+  static const std::vector<Sample> samples = lattice();
   PeakStress peak;
-  for (const auto& [bound, t] : faces) {
+  for (const auto& [bound, t] : by_bound(mesh, nodal)) {
     if (peak.triangle >= 0 && bound <= peak.value) break;
     const FaceStress stress = face_stress(mesh, nodal, t);
     const FaceNodes x = face_nodes(mesh, t);
     const Eigen::Vector3d center = x.leftCols<3>().rowwise().mean();
     const double radius = (x.colwise() - center).colwise().norm().maxCoeff();
-    // A face that lies inside the excluded zone as a whole needs no look at its points.
-    if (radius < distance &&
-        (clamp.within(center, distance - radius) || border.within(center, distance - radius))) {
-      continue;
-    }
-    const bool near = distance > 0 && (clamp.within(center, distance + radius) ||
-                                       border.within(center, distance + radius));
+    // A face that lies on one side as a whole needs no look at its points.
+    const bool all_in = zone.skips(t) || zone.contains_ball(center, radius);
+    const bool none_in = !all_in && !zone.touches_ball(center, radius);
+    if (left_out ? none_in : all_in) continue;
     for (const Sample& sample : samples) {
       const double value = von_mises(Voigt(stress * sample.values));
       if (peak.triangle >= 0 && value <= peak.value) continue;
       const Eigen::Vector3d position = x * sample.values;
-      if (near && (clamp.within(position, distance) || border.within(position, distance))) continue;
-      peak = {value, position, t, sample.reference};
+      const bool inside = all_in || (!none_in && zone.contains(position));
+      if (inside == left_out) peak = {value, position, t, -1, sample.reference};
     }
   }
+  return peak;
+}
+
+// The largest root mean square difference over the elements that share a corner with the peak's.
+double largest_error_around(const TetMesh& mesh, const RecoveryError& recovery,
+                            const PeakStress& peak) {
+  std::vector<int> corners;
+  for (int k = 0; k < (peak.triangle < 0 ? 4 : 3); ++k) {
+    corners.push_back(peak.triangle < 0 ? mesh.tets(peak.element, k)
+                                        : mesh.boundary(peak.triangle, k));
+  }
+  double largest = 0.0;
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    bool touches = false;
+    for (int i = 0; i < 4; ++i) {
+      for (const int corner : corners) touches |= mesh.tets(e, i) == corner;
+    }
+    if (touches) largest = std::max(largest, recovery.element[e]);
+  }
+  return largest;
+}
+
+}  // namespace
+
+PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone) {
+  const PeakStress peak = largest_sample(mesh, nodal, zone, false);
   if (peak.triangle < 0) {
-    throw std::invalid_argument(
+    throw ModelError(
         "the whole surface lies within the exclusion distance of supports and load borders: no "
-        "place is left to read the peak stress; choose a smaller exclusion_distance");
+        "place is left to read the peak stress; choose a smaller exclusion_distance or hold less "
+        "of the surface");
   }
   return peak;
+}
+
+PeakStress stress_left_out(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone) {
+  return largest_sample(mesh, nodal, zone, true);
+}
+
+VolumeStress volume_stress(const TetMesh& mesh, const Stresses& nodal, const PointStresses& points,
+                           const ExclusionZone& zone, double volume) {
+  Eigen::Matrix<double, kTetNodes, 4> values;
+  for (int q = 0; q < 4; ++q) {
+    values.col(q) = tet10_values(tet_rule_4().points[static_cast<std::size_t>(q)]);
+  }
+  std::vector<std::pair<double, int>> samples;
+  samples.reserve(static_cast<std::size_t>(4 * mesh.tets.rows()));
+  Eigen::Matrix<double, 6, kTetNodes> stress;
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    for (int i = 0; i < kTetNodes; ++i) stress.col(i) = nodal.row(mesh.tets(e, i)).transpose();
+    for (int q = 0; q < 4; ++q) {
+      samples.emplace_back(von_mises(Voigt(stress * values.col(q))), 4 * e + q);
+    }
+  }
+  std::sort(samples.begin(), samples.end(), std::greater<>());
+  VolumeStress result;
+  double above = 0.0;
+  for (const auto& [value, point] : samples) {
+    const int e = point / 4;
+    const Eigen::Vector3d position = tet_nodes(mesh, e) * values.col(point % 4);
+    if (zone.contains(position)) continue;
+    if (result.largest.element < 0) result.largest = {value, position, -1, e, {}};
+    result.exceeded = value;
+    above += points.volume[point];
+    if (above >= volume) break;
+  }
+  return result;
 }
 
 double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
                          const RecoveryError& recovery, const PeakStress& peak) {
   constexpr double kShare = 0.4, kFloor = 0.03, kSlope = 0.5, kCoarse = 23.0;
   if (!(peak.value > 0)) return 0.0;
-  double largest = 0.0;
-  for (int e = 0; e < mesh.tets.rows(); ++e) {
-    bool touches = false;
-    for (int i = 0; i < 4; ++i) {
-      for (int k = 0; k < 3; ++k) touches |= mesh.tets(e, i) == mesh.boundary(peak.triangle, k);
-    }
-    if (touches) largest = std::max(largest, recovery.element[e]);
-  }
-  const double spread = recovery_spread(mesh, points, peak.triangle, peak.reference);
+  const double largest = largest_error_around(mesh, recovery, peak);
+  const double spread = peak.triangle < 0
+                            ? recovery_spread_inside(mesh, points, peak.element, peak.position)
+                            : recovery_spread(mesh, points, peak.triangle, peak.reference);
   const double x = (spread + kShare * largest) / peak.value;
   return (std::hypot(kFloor, kSlope * x) + kCoarse * x * x * x) * peak.value;
 }

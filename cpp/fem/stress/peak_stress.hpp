@@ -4,30 +4,34 @@
 #include <vector>
 
 #include "fem/mesh/tet_mesh.hpp"
+#include "fem/stress/exclusion.hpp"
 #include "fem/stress/recovery.hpp"
 #include "fem/stress/stress.hpp"
 
 namespace codesign::fem {
 
-// Where the peak is not looked for: within distance (m) of the clamped triangles and of the border
-// of the loaded ones, where the stress of a linear elastic model grows without end under
-// refinement.
-struct PeakExclusion {
-  std::vector<int> clamped;
-  std::vector<int> loaded;
-  double distance = 0.0;
-};
-
 struct PeakStress {
   double value = 0.0;  // Pa
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  int triangle = -1;                                    // row of TetMesh::boundary
-  Eigen::Vector2d reference = Eigen::Vector2d::Zero();  // where in it
+  int triangle = -1;  // row of TetMesh::boundary; -1: inside the part
+  int element = -1;   // if inside
+  Eigen::Vector2d reference = Eigen::Vector2d::Zero();  // where in the triangle
 };
 
 // Largest von Mises stress of the nodal stress interpolated over the boundary faces, sampled at 66
-// points a face. Throws std::invalid_argument if the exclusion leaves no point.
-PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const PeakExclusion& exclusion);
+// points a face, outside the zone. Throws ModelError if the zone leaves no point.
+PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone);
+
+// The largest such stress inside the zone; value 0 if the zone holds no point of the surface.
+PeakStress stress_left_out(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone);
+
+// The same field inside the part, at the four points of each element, outside the zone.
+struct VolumeStress {
+  double exceeded = 0.0;  // Pa, in the given volume; the smallest stress if there is less material
+  PeakStress largest;     // value 0 if the zone leaves no point
+};
+VolumeStress volume_stress(const TetMesh& mesh, const Stresses& nodal, const PointStresses& points,
+                           const ExclusionZone& zone, double volume);
 
 // Estimated error (Pa) of the peak stress, from an indicator x: the spread of the recovery there
 // plus 0.4 times the largest root mean square difference between finite-element and recovered

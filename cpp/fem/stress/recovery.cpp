@@ -238,6 +238,22 @@ double recovery_spread(const TetMesh& mesh, const PointStresses& points, int tri
                   von_mises(Voigt(smooth.transpose() * values)));
 }
 
+double recovery_spread_inside(const TetMesh& mesh, const PointStresses& points, int element,
+                              const Eigen::Vector3d& position) {
+  const Points x = stress_points(mesh);
+  PatchFinder finder(mesh);
+  Voigt smooth = Voigt::Zero(), sharp = smooth;
+  for (int k = 0; k < 4; ++k) {
+    PatchField field = fit_around(mesh, mesh.tets(element, k), finder, x, points.stress);
+    for (auto& [stress, exponent] :
+         {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
+      fit(finder.patch(), x, points.stress, exponent, field);
+      *stress += 0.25 * field.at(position).transpose();
+    }
+  }
+  return std::abs(von_mises(sharp) - von_mises(smooth));
+}
+
 RecoveryError recovery_error(const TetMesh& mesh, const Material& material,
                              const Eigen::VectorXd& displacement, const Stresses& recovered) {
   const double lambda = lame_lambda(material), mu = shear_modulus(material);

@@ -21,6 +21,10 @@ Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);
 double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,
                        const Eigen::Vector2d& reference);
 
+// The same at a point (m) inside an element, where the fits around its four corners are averaged.
+double recovery_spread_inside(const TetMesh& mesh, const PointStresses& points, int element,
+                              const Eigen::Vector3d& position);
+
 // How far the finite-element stress is from the recovered one.
 struct RecoveryError {
   double relative_energy = 0.0;  // energy norm of the difference over that of the recovered field

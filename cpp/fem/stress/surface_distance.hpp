@@ -7,29 +7,42 @@
 
 namespace codesign::fem {
 
-// Exact distance questions to a set of boundary triangles, or to the border of such a set. A
-// six-node triangle counts as four flat ones, a border edge as two segments.
+// Exact distance questions to pieces of a mesh's surface, each with a reach (m) of its own: the
+// distance that is kept from it. A six-node triangle counts as four flat ones, an edge as two
+// segments.
 class SurfaceDistance {
  public:
   SurfaceDistance() = default;
-  SurfaceDistance(const TetMesh& mesh, const std::vector<int>& triangles);
 
-  // Border: edges of exactly one of the triangles.
-  static SurfaceDistance to_border(const TetMesh& mesh, const std::vector<int>& triangles);
+  // All with the same reach.
+  SurfaceDistance(const TetMesh& mesh, const std::vector<int>& triangles, double reach = 0.0);
 
-  // True if the point is not farther than distance (m).
-  bool within(const Eigen::Vector3d& point, double distance) const;
+  void add_triangle(const TetMesh& mesh, int triangle, double reach);
+  // The edge from corner k to corner k + 1 of a boundary triangle.
+  void add_edge(const TetMesh& mesh, int triangle, int k, double reach);
+  // To be called after the last addition and before any question.
+  void sort_pieces();
+
+  // True if the point is not farther from a piece than its reach enlarged by `more` (m).
+  bool within(const Eigen::Vector3d& point, double more = 0.0) const;
+
+  // From the nearest piece; infinite if there is none. [m]
+  double distance(const Eigen::Vector3d& point) const;
+
+  bool empty() const { return pieces_.empty(); }
+  double smallest_reach() const;  // 0 if empty
+  double largest_reach() const;
 
  private:
   struct Piece {  // flat triangle; a segment has c == b
     Eigen::Vector3d a, b, c, center;
-    double radius = 0.0;
+    double radius = 0.0, reach = 0.0;
   };
-  void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
-  void sort_pieces();
+  void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+           double reach);
 
   std::vector<Piece> pieces_;  // by center.x
-  double max_radius_ = 0.0;
+  double max_extent_ = 0.0;    // of radius + reach
 };
 
 }  // namespace codesign::fem

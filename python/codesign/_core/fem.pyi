@@ -15,7 +15,9 @@ __all__: list[str] = [
     "BodyForce",
     "BucklingModes",
     "Disc",
+    "ExclusionRule",
     "Force",
+    "LeftOut",
     "LinearSolver",
     "MassProperties",
     "Material",
@@ -26,6 +28,7 @@ __all__: list[str] = [
     "Selection",
     "SizeField",
     "SizeSource",
+    "SmoothPatch",
     "SmoothReport",
     "StaticResult",
     "StaticSettings",
@@ -34,6 +37,7 @@ __all__: list[str] = [
     "SurfaceMesh",
     "TetMesh",
     "Traction",
+    "boundary_surface",
     "check_surface",
     "face_area",
     "label_by_angle",
@@ -42,9 +46,11 @@ __all__: list[str] = [
     "load_vector",
     "mass_properties",
     "natural_modes",
+    "nearest_triangle",
     "read_stl",
     "selected_nodes",
     "selected_triangles",
+    "smooth_patch",
     "smooth_surface",
     "tetrahedralize",
     "triangles_in_box",
@@ -363,6 +369,21 @@ class Selection:
     @property
     def triangles(self) -> list[int]: ...
 
+class SmoothPatch:
+    """
+    A piece of one smooth face of a surface.
+    """
+    @property
+    def triangles(self) -> list[int]:
+        """
+        sorted
+        """
+    @property
+    def type(self) -> str:
+        """
+        plane, cylinder, cone, sphere or free
+        """
+
 class Support:
     def __init__(
         self,
@@ -455,7 +476,61 @@ class LinearSolver:
     @property
     def value(self) -> int: ...
 
+class ExclusionRule:
+    """
+    Members:
+
+      local
+
+      published
+    """
+
+    __members__: typing.ClassVar[dict[str, ExclusionRule]]
+    local: typing.ClassVar[ExclusionRule]
+    published: typing.ClassVar[ExclusionRule]
+    @typing.overload
+    def __eq__(self, other: ExclusionRule) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ExclusionRule) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class LeftOut:
+    """
+    Largest von Mises stress that the exclusion leaves out.
+    """
+    @property
+    def border_distance(self) -> float:
+        """
+        m, from the nearest border of a clamp or load
+        """
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3) m
+        """
+    @property
+    def stress(self) -> float:
+        """
+        Pa; 0: nothing is left out
+        """
+
 class StaticSettings:
+    exclusion: ExclusionRule
     solver: LinearSolver
     def __init__(self) -> None: ...
     @property
@@ -463,9 +538,12 @@ class StaticSettings:
     @copies.setter
     def copies(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     @property
-    def exclusion_distance(self) -> float: ...
+    def exclusion_distance(self) -> float | None:
+        """
+        m, everywhere; None: that of the rule
+        """
     @exclusion_distance.setter
-    def exclusion_distance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def exclusion_distance(self, arg0: typing.SupportsFloat | typing.SupportsIndex | None) -> None: ...
     @property
     def memory_limit(self) -> float:
         """
@@ -504,10 +582,22 @@ class StaticResult:
     @property
     def equations(self) -> int: ...
     @property
+    def exclusion_largest(self) -> float:
+        """
+        m
+        """
+    @property
+    def exclusion_smallest(self) -> float:
+        """
+        m, of the distances kept from borders
+        """
+    @property
     def iterations(self) -> int:
         """
         of conjugate gradients; 0: solved by the factor
         """
+    @property
+    def left_out(self) -> LeftOut: ...
     @property
     def max_displacement(self) -> float:
         """
@@ -517,6 +607,11 @@ class StaticResult:
     def peak_position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
         (3) m
+        """
+    @property
+    def peak_resolved(self) -> bool:
+        """
+        False if the estimated error exceeds half of the peak stress
         """
     @property
     def peak_stress(self) -> float:
@@ -534,7 +629,10 @@ class StaticResult:
         relative, over the free components
         """
     @property
-    def safety_factor(self) -> float: ...
+    def safety_factor(self) -> float:
+        """
+        yield strength over peak_stress; inf if nothing is stressed
+        """
     @property
     def strain_energy(self) -> float:
         """
@@ -634,6 +732,11 @@ class StaticSystem:
         self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
     ) -> StaticResult: ...
 
+def boundary_surface(mesh: TetMesh) -> SurfaceMesh:
+    """
+    The boundary of a TetMesh as a SurfaceMesh of flat triangles.
+    """
+
 def check_surface(surface: SurfaceMesh) -> None:
     """
     Checks that a surface bounds one solid, with or without cavities.
@@ -703,6 +806,13 @@ def natural_modes(
     supports: collections.abc.Sequence[Support],
     count: typing.SupportsInt | typing.SupportsIndex,
 ) -> NaturalModes: ...
+def nearest_triangle(
+    surface: SurfaceMesh, point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+) -> int:
+    """
+    Index of the triangle of a SurfaceMesh nearest to a point, m.
+    """
+
 def read_stl(path: os.PathLike | str | bytes, scale: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> SurfaceMesh:
     """
     The triangles of an STL file as they are, in metres, under one unnamed face: not checked.
@@ -719,6 +829,15 @@ def selected_nodes(mesh: TetMesh, selection: Selection) -> list[int]:
 def selected_triangles(mesh: TetMesh, selection: Selection) -> list[int]:
     """
     Rows of mesh.boundary that a selection holds, sorted.
+    """
+
+def smooth_patch(
+    surface: SurfaceMesh,
+    start: typing.SupportsInt | typing.SupportsIndex,
+    max_bend: typing.SupportsFloat | typing.SupportsIndex,
+) -> SmoothPatch:
+    """
+    The plane, cylinder, cone, sphere or free face that a triangle of a SurfaceMesh belongs to.
     """
 
 def smooth_surface(

@@ -53,9 +53,11 @@ def print_evaluation(evaluation: Evaluation) -> None:
     for name, part in evaluation.parts.items():
         table.add_row(
             name,
-            f"{part['mass']:.4f} kg, SF {part['safety_factor']:.1f}, peak {part['peak_stress'] / 1e6:.2f} MPa"
-            f" (± {part['stress_error'] / 1e6:.2f})",
+            f"{part['mass']:.4f} kg, SF {_factor(part, 1)}, peak {part['peak_stress'] / 1e6:.2f} MPa"
+            f" (± {part['stress_error'] / 1e6:.2f}), left out {_left_out(part)}",
         )
+        if not part.get("peak_resolved", True):
+            table.add_row("", 'peak not resolved: its error exceeds half of it; set [fem] accuracy = "fine"')
     for key in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust"):
         if key in evaluation.flight:
             table.add_row(f"flight {key}", shown(evaluation.flight[key], 4))
@@ -68,14 +70,29 @@ def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
     for name, confirmation in confirmations.items():
         table = Table("", "as analysed", "full, fine mesh", title=name, title_justify="left", box=None, pad_edge=False)
         both = (confirmation.analysed, confirmation.confirmed)
-        table.add_row("safety factor", *(f"{part['safety_factor']:.2f}" for part in both))
+        table.add_row("safety factor", *(_factor(part, 2) for part in both))
         stresses = (f"{part['peak_stress'] / 1e6:.2f} ± {part['stress_error'] / 1e6:.2f}" for part in both)
         table.add_row("peak stress [MPa]", *stresses)
+        table.add_row("largest stress left out", *(_left_out(part) for part in both))
         table.add_row("stress in 50 mm³ [MPa]", *(f"{part['stress_50'] / 1e6:.2f}" for part in both))
         table.add_row("largest displacement [mm]", *(f"{part['max_displacement'] * 1e3:.4f}" for part in both))
         table.add_row("tolerance reached", *("yes" if part["tolerance_reached"] else "no" for part in both))
         table.add_row("seconds", *(f"{sum(part['seconds'].values()):.1f}" for part in both))
         out.print(table)
+
+
+def _factor(part: Mapping[str, Any], digits: int) -> str:
+    """Safety factor of a part; one that is not stressed has none."""
+    factor = part["safety_factor"]
+    return "none (not stressed)" if factor is None else f"{factor:.{digits}f}"
+
+
+def _left_out(part: Mapping[str, Any]) -> str:
+    """The largest stress that the exclusion leaves out, and its distance to the next clamp or border of a load."""
+    left_out = part.get("left_out")
+    if left_out is None:
+        return "none"
+    return f"{left_out['stress'] / 1e6:.2f} MPa, {left_out['border_distance'] * 1e3:.1f} mm from a border"
 
 
 def print_run(run: Run, as_json: bool) -> int:
@@ -133,13 +150,17 @@ def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:
 def print_stress(document: dict[str, Any]) -> None:
     """Text summary of `codesign stress`."""
     table = Table(show_header=False, box=None, pad_edge=False)
-    table.add_row("safety factor", f"{document['safety_factor']:.3g} ({document['material']})")
-    table.add_row(
-        "peak stress", f"{document['peak_stress'] / 1e6:.4g} ± {document['stress_error'] / 1e6:.2g} MPa at "
-        + ", ".join(f"{1e3 * x:.2f}" for x in document["peak_position"]) + " mm",
-    )  # fmt: skip
+    factor = document["safety_factor"]
+    known = document["safety_factor_reason"] if factor is None else f"{factor:.3g}"
+    table.add_row("safety factor", f"{known} ({document['material']})")
+    peak = f"{document['peak_stress'] / 1e6:.4g} ± {document['stress_error'] / 1e6:.2g} MPa"
+    unresolved = "" if document["peak_resolved"] else " (not resolved)"
+    table.add_row("peak stress", f"{peak}{unresolved} at {_millimetres(document['peak_position'])}")
+    table.add_row("largest stress left out", _describe_left_out(document["left_out"]))
     table.add_row("stress exceeded in 50 mm³", f"{document['stress_50'] / 1e6:.4g} MPa")
     table.add_row("largest displacement", f"{document['max_displacement'] * 1e3:.4g} mm")
+    for place in document["places"]:
+        table.add_row(f"{place['kind']} {place['selection']}", _describe_place(place))
     if document["smoothing"] is not None:
         table.add_row("facets curved back", _describe_facets(document["smoothing"]))
     if document["facets_literal"] is not None:
@@ -147,6 +168,25 @@ def print_stress(document: dict[str, Any]) -> None:
     table.add_row("elements", f"{document['tetrahedra']}, edge length {document['edge_length'] * 1e3:.3g} mm")
     table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
     out.print(table)
+    for warning in document["warnings"]:
+        out.print(f"[yellow]warning[/]: {warning}", highlight=False)
+
+
+def _millimetres(position: list[float]) -> str:
+    return ", ".join(f"{1e3 * x:.2f}" for x in position) + " mm"
+
+
+def _describe_left_out(left_out: dict[str, Any] | None) -> str:
+    if left_out is None:
+        return "none"
+    border = f"{left_out['border_distance'] * 1e3:.2g} mm from a border of a clamp or load"
+    return f"{left_out['stress'] / 1e6:.4g} MPa at {_millimetres(left_out['position'])}, {border}"
+
+
+def _describe_place(place: dict[str, Any]) -> str:
+    bend = f", bends by {place['bend_deg']:.0f}°" if place["bend_deg"] >= 0.5 else ""
+    facets = f", {place['facets']} facets" if place["facets"] else ", part of a facet"
+    return f"{place['type']}, {place['area'] * 1e6:.4g} mm² at {_millimetres(place['centroid'])}{bend}{facets}"
 
 
 def _describe_facets(facets: dict[str, Any]) -> str:

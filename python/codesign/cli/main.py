@@ -347,7 +347,8 @@ def stress(
     vtu: Annotated[Path | None, typer.Option(help="Where to write displacement and stress, for ParaView.")] = None,
     png: Annotated[Path | None, typer.Option(help="Where to write a picture of the stressed part.")] = None,
     exclusion: Annotated[
-        float | None, typer.Option(metavar="MM", help="No peak is read nearer to clamps and load borders; default 3.")
+        float | None,
+        typer.Option(metavar="MM", help="No peak is read nearer to borders of clamps; default: a fifth of the wall"),
     ] = None,
     smooth: Annotated[
         bool, typer.Option("--smooth", help="The file is a coarse tessellation of curved faces: curve its facets back.")
@@ -369,7 +370,8 @@ def stress(
         print_json(document)
     else:
         print_stress(document)
-    return 0 if document["safety_factor"] >= 1.0 else 1
+    factor = document["safety_factor"]
+    return 0 if factor is None or factor >= 1.0 else 1
 
 
 @app.command(epilog="Example: `codesign doctor`")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +14,23 @@ import numpy as np
 from codesign import fem
 from codesign.cli.stress_mesh import default_edge_length, literal_facets, mesh_places
 from codesign.cli.stress_options import StressInputError, parse_load, parse_selection
+from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
+from codesign.errors import ModelError
+from codesign.parts.load_case import strength_document
 from codesign.units import MILLIMETRE
 
 
-def default_exclusion(surface: fem.SurfaceMesh) -> float:
-    """Exclusion distance [m]: 3 mm, or a tenth of the extent of a part smaller than 30 mm."""
-    extent = float(np.linalg.norm(np.ptp(surface.points, axis=0)))
-    return min(3.0 * MILLIMETRE, 0.1 * extent)
+@dataclass(frozen=True)
+class Solved:
+    """A part that was meshed and solved. smoothing: how facets were curved back. seconds: wall clock."""
+
+    surface: fem.SurfaceMesh
+    mesh: fem.TetMesh
+    places: list[CaughtPlace]
+    result: fem.StaticResult
+    size: float
+    smoothing: dict[str, Any] | None
+    seconds: dict[str, float]
 
 
 def stress_document(
@@ -34,14 +45,14 @@ def stress_document(
     exclusion_mm: float | None = None,
     smooth: bool = False,
 ) -> dict[str, Any]:
-    """Meshes, solves and gives the JSON document of `codesign stress`; SI units.
+    """Meshes, solves and gives the JSON document of `codesign stress` (docs/fem.md); SI units.
 
     Args:
         path: STL file. scale: metres per unit of the file, also of the selections' coordinates.
         fix: selections held in all directions. load: texts `SEL: fx fy fz`.
         edge_length_mm: of the elements; from the wall thickness if absent. vtu, png: the stress field, a picture of it.
-        exclusion_mm: the peak stress is read farther than this from clamps and from borders of loaded faces; 3 mm, or a
-            tenth of a small part's extent, if absent.
+        exclusion_mm: the peak stress is read farther than this from borders of clamps and from sharp pocket edges that
+            border a load; in proportion to the local feature if absent.
         smooth: take the file for a tessellation of curved faces and curve its facets back before meshing.
 
     Raises: MeshError, SolverError, StressInputError.
@@ -51,55 +62,79 @@ def stress_document(
     for name, value in (("--edge-length", edge_length_mm), ("--exclusion", exclusion_mm), ("--scale", scale)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise StressInputError(f"{name}: a positive number is needed")
-    held = [parse_selection(text, scale) for text in fix]
-    pushed = [parse_load(text, scale) for text in load]
+    asked = [PlacedText(text.strip(), parse_selection(text, scale)) for text in fix]
+    for text in load:
+        place, force = parse_load(text, scale)
+        asked.append(PlacedText(text.rpartition(":")[0].strip(), place, force))
+    edge_length = None if edge_length_mm is None else edge_length_mm * MILLIMETRE
+    exclusion = None if exclusion_mm is None else exclusion_mm * MILLIMETRE
+    solved = _solve(fem.load_surface(path, scale), asked, material, edge_length, exclusion, smooth)
+    _write_files(path, material, solved, vtu, png)
+    return _document(path, material, solved, smooth)
+
+
+def _solve(
+    surface: fem.SurfaceMesh,
+    asked: Sequence[PlacedText],
+    material: fem.Material,
+    edge_length: float | None,
+    exclusion: float | None,
+    smooth: bool,
+) -> Solved:
     start = time.perf_counter()
-    surface = fem.load_surface(path, scale)
-    size = default_edge_length(surface) if edge_length_mm is None else edge_length_mm * MILLIMETRE
-    exclusion = default_exclusion(surface) if exclusion_mm is None else exclusion_mm * MILLIMETRE
-    mesh, places, smoothing = mesh_places(surface, [*held, *(place for place, _ in pushed)], size, smooth)
-    supports = [fem.Support(place) for place in places[: len(held)]]
-    loads = [fem.Force(place, force) for place, (_, force) in zip(places[len(held) :], pushed, strict=True)]
+    size = default_edge_length(surface) if edge_length is None else edge_length
+    mesh, named, smoothing = mesh_places(surface, [placed.place for placed in asked], size, smooth)
+    places = caught_places(asked, named, mesh, size)
+    supports = [fem.Support(place.selection) for place in places if place.asked.force is None]
+    loads = [fem.Force(p.selection, p.asked.force) for p in places if p.asked.force is not None]
     meshed = time.perf_counter()
     try:
         result = fem.solve_static(mesh, material, supports, loads, exclusion_distance=exclusion)
-    except ValueError as error:
+    except ModelError as error:
         raise StressInputError(str(error)) from None
-    solved = time.perf_counter()
+    seconds = {"mesh": meshed - start, "solve": time.perf_counter() - meshed}
+    return Solved(surface, mesh, places, result, size, smoothing, seconds)
+
+
+def _write_files(path: Path, material: fem.Material, solved: Solved, vtu: Path | None, png: Path | None) -> None:
     if vtu is not None:
         from codesign.fem.vtu import StressModel, write_vtu
 
+        result = solved.result
         notes = {
             "part": path.name,
-            "model": "the surface of the file" + (", facets curved back" if smooth else ""),
-            "load_case": f"held: {'; '.join(fix)}; loads [N]: {'; '.join(load)}; selections in units of {scale:g} m",
+            "model": "the surface of the file" + (", facets curved back" if solved.smoothing else ""),
+            "load_case": "; ".join(place.words() for place in solved.places),
             "material": material.name,
             "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa",
         }
-        write_vtu(StressModel.of(mesh, result), vtu, notes)
+        write_vtu(StressModel.of(solved.mesh, result), vtu, notes)
     if png is not None:
-        from codesign.report.compute import stress_field
-        from codesign.report.figures.solids import write_stress_picture
+        from codesign.cli.stress_picture import write_stress_picture
 
-        title = f"{path.stem}: safety factor {result.safety_factor:.3g}"
-        write_stress_picture(stress_field(mesh, result), title, png)
+        write_stress_picture(solved.mesh, solved.result, solved.places, path.stem, png)
+
+
+def _document(path: Path, material: fem.Material, solved: Solved, smooth: bool) -> dict[str, Any]:
+    result, mesh = solved.result, solved.mesh
     quality, report = mesh.quality, mesh.report
+    forces = [place.asked.force for place in solved.places if place.asked.force is not None]
+    strength = strength_document(result)
     return {
         "file": str(path),
         "material": material.name,
-        "safety_factor": result.safety_factor,
-        "peak_stress": result.peak_stress,
-        "peak_position": [float(x) for x in result.peak_position],
-        "stress_50": result.stress_50,
-        "stress_error": result.stress_error,
+        **strength,
+        "safety_factor_reason": None if strength["safety_factor"] is not None else "the loads do not stress the part",
         "max_displacement": result.max_displacement,
         "work": result.work,
-        "applied_force": [float(x) for x in np.array([force for _, force in pushed]).sum(axis=0)],
+        "applied_force": [float(x) for x in np.array(forces).sum(axis=0)],
         "reaction_force": [float(x) for x in np.asarray(result.reactions).sum(axis=0)],
+        "places": [place.to_dict() for place in solved.places],
+        "warnings": _warnings(solved),
         "mass": quality.volume * material.density if material.density > 0.0 else None,
         "volume": quality.volume,
-        "edge_length": size,
-        "exclusion_distance": exclusion,
+        "edge_length": solved.size,
+        "exclusion": {"smallest": result.exclusion_smallest, "largest": result.exclusion_largest},
         "nodes": len(mesh.nodes),
         "tetrahedra": len(mesh.tets),
         "mesh": {
@@ -108,7 +143,25 @@ def stress_document(
             "collapse_distance": report.collapse_distance,
             "peeled": report.peeled,
         },
-        "smoothing": smoothing,
-        "facets_literal": None if smooth else literal_facets(surface, size),
-        "seconds": {"mesh": meshed - start, "solve": solved - meshed},
+        "smoothing": solved.smoothing,
+        "facets_literal": None if smooth else literal_facets(solved.surface, solved.size),
+        "seconds": solved.seconds,
     }
+
+
+def _warnings(solved: Solved) -> list[str]:
+    result = solved.result
+    found = [warning for place in solved.places for warning in place.warnings()]
+    if not result.peak_resolved:
+        found.append(
+            f"the peak stress is not resolved: its estimated error is {result.stress_error / result.peak_stress:.0%} "
+            f"of it; give a smaller --edge-length than {solved.size / MILLIMETRE:.3g} mm"
+        )
+    if result.left_out.stress > result.peak_stress > 0.0:
+        at = ", ".join(f"{x / MILLIMETRE:.2f}" for x in result.left_out.position)
+        found.append(
+            f"the stress left out is {result.left_out.stress / result.peak_stress:.2g} times the peak, at {at} mm: "
+            "beside ideal clamps and at sharp edges stress grows without end under refinement; model the fillet there, "
+            "or judge it by hand"
+        )
+    return found

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from codesign import fem
 from codesign.errors import MeshError
-from codesign.fem.selections import Place, label_surface
+from codesign.fem.selections import Labelled, Place, label_surface
 
 ELEMENTS_WANTED = 30_000  # of the default edge length, at most
 COARSE = 20_000  # triangles: a surface with more is no coarse tessellation
@@ -50,37 +51,37 @@ def _smoothing(report: fem.SmoothReport) -> dict[str, Any]:
 
 def mesh_places(
     surface: fem.SurfaceMesh, places: Sequence[Place], size: float, smooth: bool
-) -> tuple[fem.TetMesh, list[fem.Selection], dict[str, Any] | None]:
+) -> tuple[fem.TetMesh, Labelled, dict[str, Any] | None]:
     """The mesh, the places on it, and the smoothing; the facets themselves if their smooth surface cannot be meshed.
 
     Places are looked up on the facets of the file; the pieces of a facet belong to its place.
     """
-    labelled, selections = label_surface(surface, places)
+    named = label_surface(surface, places)
     if not smooth:
-        return *_mesh_either(labelled, lambda: surface, selections, places, size), None
-    curved, report = fem.smooth_surface(labelled)
+        return *_mesh_either(named.surface, lambda: surface, named, places, size), None
+    curved, report = fem.smooth_surface(named.surface)
     try:
-        return *_mesh_either(curved, lambda: fem.smooth_surface(surface)[0], selections, places, size), _smoothing(
-            report
-        )
+        meshed = _mesh_either(curved, lambda: fem.smooth_surface(surface)[0], named, places, size)
+        return *meshed, _smoothing(report)
     except MeshError as error:
         reason = f"the curved surface cannot be meshed ({error}): facets taken literally"
         unused = {"facets": 0, "max_distance": 0.0, "volume_change": 0.0, "left": report.facets, "reason": reason}
-        return *_mesh_either(labelled, lambda: surface, selections, places, size), unused
+        return *_mesh_either(named.surface, lambda: surface, named, places, size), unused
 
 
 def _mesh_either(
     labelled: fem.SurfaceMesh,
     plain: Callable[[], fem.SurfaceMesh],
-    selections: list[fem.Selection],
+    named: Labelled,
     places: Sequence[Place],
     size: float,
-) -> tuple[fem.TetMesh, list[fem.Selection]]:
+) -> tuple[fem.TetMesh, Labelled]:
     """The mesh and the places on it, with exact borders unless they are too ragged for the edge length.
 
     plain: makes the surface without the places' borders, which is rarely needed.
     """
     try:
-        return fem.tetrahedralize(labelled, size), selections
+        return fem.tetrahedralize(labelled, size), named
     except MeshError:
-        return fem.tetrahedralize(plain(), size), [place.on_mesh() for place in places]
+        mesh = fem.tetrahedralize(plain(), size)
+        return mesh, replace(named, selections=[place.on_mesh() for place in places])

@@ -15,6 +15,7 @@ from codesign._core.fem import (
     smooth_surface,
     tetrahedralize,
 )
+from codesign.errors import ModelError
 from codesign.fem.model import (
     Acceleration,
     AffineTraction,
@@ -58,6 +59,7 @@ __all__ = [
     "Material",
     "MeshQuality",
     "MeshReport",
+    "ModelError",
     "Modes",
     "Pressure",
     "RepairReport",

@@ -16,6 +16,8 @@ from codesign._core import fem as _core
 from codesign._core.fem import Material as Material
 from codesign._core.fem import TetMesh as TetMesh
 
+MAX_BEND_DEG = 30.0  # between two triangles of a smooth face
+
 Predicate = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 
 
@@ -99,10 +101,11 @@ def select_faces(triangles: ArrayLike | Predicate) -> Selection:
     return _Triangles(corners[:, :3])
 
 
-def faces_near(point: ArrayLike, max_bend_deg: float = 30.0) -> Selection:
-    """The smooth piece of surface nearest to a point [m].
+def faces_near(point: ArrayLike, max_bend_deg: float = MAX_BEND_DEG) -> Selection:
+    """The smooth face nearest to a point [m].
 
-    It extends over the same named face until the surface bends by more than max_bend_deg between two triangles.
+    It extends over the same named face until the surface leaves the plane, cylinder, cone or sphere of the nearest
+    triangle, or bends by more than max_bend_deg between two triangles.
     """
     return _Rule(lambda mesh: _core.triangles_near(mesh, np.asarray(point, dtype=float), np.deg2rad(max_bend_deg)))
 

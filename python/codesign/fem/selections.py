@@ -6,33 +6,27 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from codesign import fem
-
-MAX_BEND_DEG = 30.0  # between two triangles of a smooth piece of surface
+from codesign._core import fem as _core
+from codesign.fem.cut import cut_by_box
+from codesign.fem.model import MAX_BEND_DEG
 
 Triangles = NDArray[np.bool_]  # (m,) of the surface: selected or not
 
 
 @dataclass(frozen=True)
 class Near:
-    """The smooth piece of surface nearest to a point [m]."""
+    """The smooth face nearest to a point [m]: it ends where the surface leaves its plane, cylinder, cone or sphere."""
 
     point: tuple[float, float, float]
 
     def triangles(self, surface: fem.SurfaceMesh) -> Triangles:
         """Those of the surface."""
-        mesh = trimesh.Trimesh(surface.points, surface.triangles, process=False)
-        points = np.tile(self.point, (len(mesh.faces), 1))
-        near = trimesh.triangles.closest_point(mesh.triangles, points)  # type: ignore[no-untyped-call]
-        start = int(np.argmin(np.linalg.norm(near - self.point, axis=1)))
-        smooth = mesh.face_adjacency[mesh.face_adjacency_angles <= np.radians(MAX_BEND_DEG)]
-        piece = trimesh.graph.connected_component_labels(  # type: ignore[no-untyped-call]
-            smooth, node_count=len(mesh.faces)
-        )
-        chosen: Triangles = piece == piece[start]
+        chosen = np.zeros(len(surface.triangles), dtype=bool)
+        start = _core.nearest_triangle(surface, np.array(self.point))
+        chosen[_core.smooth_patch(surface, start, np.radians(MAX_BEND_DEG)).triangles] = True
         return chosen
 
     def on_mesh(self) -> fem.Selection:
@@ -81,11 +75,27 @@ class Facing:
 Place = Near | Box | Facing
 
 
-def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> tuple[fem.SurfaceMesh, list[fem.Selection]]:
-    """The surface with a named face for each place (and each overlap), and the places as selections of its mesh.
+@dataclass(frozen=True)
+class Labelled:
+    """A surface with a named face for each place (and each overlap), and the places as selections of its mesh.
 
-    A box also takes sides of elements that it holds although it cuts the triangle of the surface they lie on.
+    masks: (m,) of each place, which triangles of the surface belong to it.
     """
+
+    surface: fem.SurfaceMesh
+    selections: list[fem.Selection]
+    masks: list[Triangles]
+
+
+def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> Labelled:
+    """Names the places on a surface.
+
+    A box that holds no whole triangle cuts those that it meets. One that holds some also takes sides of elements that
+    it holds although it cuts the triangle of the surface they lie on.
+    """
+    for place in places:
+        if isinstance(place, Box) and not place.triangles(surface).any():
+            surface = cut_by_box(surface, place.lower, place.upper)
     masks = np.array([place.triangles(surface) for place in places])
     kinds, face = np.unique(masks, axis=1, return_inverse=True)
     names = [f"region {i}" if kind.any() else "" for i, kind in enumerate(kinds.T)]
@@ -96,4 +106,4 @@ def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> tuple[fe
         if isinstance(place, Box) or not parts:
             parts.append(place.on_mesh())
         selections.append(fem.select_union(*parts))
-    return labelled, selections
+    return Labelled(labelled, selections, list(masks))

@@ -8,16 +8,21 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from codesign import _core, fem
-from codesign.errors import StudyError
+from codesign.errors import ModelError, StudyError
+from codesign.fem.static import Exclusion
 from codesign.names import nearest
 
 if TYPE_CHECKING:
     from codesign.parts.part import Part
 
 
+Vector = NDArray[np.float64]
+
 MAX_REFINEMENTS = 3  # halvings of the edge length around the peak
+LEAST_MEAN_NORMAL = 0.1  # length of a face's mean unit normal: 1 for a plane, 0.64 for a half bore, 0 for a whole one
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +32,22 @@ class PressedFace:
     face: str
     force: float
 
+    def along(self, direction: ArrayLike) -> Vector:
+        """(3,) the force [N] on a face that is pressed in a (unit) direction, part axes."""
+        return self.force * np.asarray(direction, dtype=float)
+
+
+@dataclass(frozen=True, slots=True)
+class PushedFace:
+    """A total force (3,) [N] in part axes on a named face, uniformly over its area."""
+
+    face: str
+    force: tuple[float, float, float]
+
+    def along(self, direction: ArrayLike) -> Vector:  # noqa: ARG002 (this load has its own)
+        """(3,) the force [N], part axes."""
+        return np.asarray(self.force, dtype=float)
+
 
 @dataclass(frozen=True, slots=True)
 class StressSettings:
@@ -34,19 +55,20 @@ class StressSettings:
 
     geometry: "simplified" or "full" (see the part). load, support: variant names that a part may offer.
     accuracy: "optimisation" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
-    error and its change are within the tolerance. exclusion_distance: [m] from clamps and from borders of loaded faces
-    within which the peak stress is not read. tolerance: wanted relative error of the peak stress. modes, buckling: how
-    many natural frequencies and buckling factors are wanted.
+    error and its change are within the tolerance. exclusion, exclusion_distance [m]: where the peak stress is not read,
+    as in `fem.StaticSystem`. tolerance: wanted relative error of the peak stress. modes, buckling: how many natural
+    frequencies and buckling factors are wanted.
     """
 
     material: fem.Material
     supports: Sequence[str]
-    loads: Sequence[PressedFace]
+    loads: Sequence[PressedFace | PushedFace]
     geometry: Literal["simplified", "full"] = "simplified"
     load: str = "uniform"
     support: str = "published"
     accuracy: Literal["optimisation", "fine", "converged"] = "optimisation"
-    exclusion_distance: float = 3e-3
+    exclusion: Exclusion = "local"
+    exclusion_distance: float | None = None
     tolerance: float = 0.05
     modes: int = 0
     buckling: int = 0
@@ -71,18 +93,42 @@ def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     thickness = 2.0 * properties.volume / areas.sum()
     edge_length = thickness * (0.2 if settings.accuracy == "fine" else 0.35)  # the peak's own size is found by refining
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    loads = []
-    for load in settings.loads:
-        if load.face not in surface.face_names:
-            raise StudyError(
-                f"{part.name}: no face {load.face!r}; {nearest(load.face, filter(None, surface.face_names))}"
-            )
-        on_face = surface.face == surface.face_names.index(load.face)
-        direction = -normals[on_face].sum(axis=0)
-        force = load.force * direction / np.linalg.norm(direction)
-        loads.append(_core.fem.Force(_core.fem.Selection(faces=[load.face]), force))
+    loads = [face_force(surface, load, part.name) for load in settings.loads]
     return native_case(settings, surface, fem.SizeField(edge_length), [clamp(*settings.supports)], loads)
+
+
+def face_force(surface: fem.SurfaceMesh, load: PressedFace | PushedFace, part: str) -> _core.fem.Force:
+    """The total force of a load on a named face of a part's surface. Raises: StudyError (no such face), ModelError."""
+    if load.face not in surface.face_names:
+        raise StudyError(f"{part}: no face {load.face!r}; {nearest(load.face, filter(None, surface.face_names))}")
+    if isinstance(load, PressedFace):
+        try:
+            force = load.along(pressing_direction(surface, load.face))
+        except ModelError as error:
+            raise ModelError(f"{part}: pressing_n on {error}") from None
+    else:
+        force = load.along(())
+    if not force.any():
+        raise ModelError(f"{part}: the force on face {load.face!r} is zero")
+    return _core.fem.Force(_core.fem.Selection(faces=[load.face]), force)
+
+
+def pressing_direction(surface: fem.SurfaceMesh, face: str) -> Vector:
+    """(3,) unit vector against the mean outward normal of a named face.
+
+    Raises: ModelError: its normals cancel, as those of a whole bore do.
+    """
+    corners = surface.points[surface.triangles[np.asarray(surface.face) == surface.face_names.index(face)]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    direction = -normals.sum(axis=0)
+    length = float(np.linalg.norm(direction))
+    share = length / float(np.linalg.norm(normals, axis=1).sum())
+    if share < LEAST_MEAN_NORMAL:
+        raise ModelError(
+            f"face {face!r}: its normals cancel (their mean has the length {share:.2g}), so there is no direction to "
+            "press in; give the force as a vector, force_n = [x, y, z]"
+        )
+    return np.asarray(direction / length)
 
 
 def clamp(*faces: str) -> _core.fem.Support:
@@ -105,6 +151,7 @@ def native_case(
     copies: 2 for one half of a symmetric part; work and stress_50 then refer to the whole part.
     """
     static = _core.fem.StaticSettings()
+    static.exclusion = getattr(_core.fem.ExclusionRule, settings.exclusion)
     static.exclusion_distance = settings.exclusion_distance
     static.copies = copies
     case = _core.PartCase(
@@ -124,7 +171,10 @@ def native_case(
 
 
 def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
-    """Numbers of one part for JSON, SI units; `buckling_factor` is None if the load cannot buckle the part."""
+    """Numbers of one part for JSON, SI units.
+
+    `buckling_factor` is None if the load cannot buckle the part, `safety_factor` if it does not stress it.
+    """
     result = analysis.result
     optional: dict[str, Any] = {}
     if analysis.refinements:
@@ -139,18 +189,37 @@ def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
         "mass": float(mass.mass),
         "com": [float(x) for x in mass.com],
         "inertia": [[float(x) for x in row] for row in mass.inertia],
-        "safety_factor": result.safety_factor,
-        "peak_stress": result.peak_stress,
-        "stress_50": result.stress_50,
-        "stress_error": result.stress_error,
+        **strength_document(result),
         "tolerance_reached": analysis.converged,
         **optional,
         "max_displacement": result.max_displacement,
         "work": result.work,
-        "peak_position": [float(x) for x in result.peak_position],
         "nodes": len(analysis.mesh.nodes),
         "tetrahedra": len(analysis.mesh.tets),
         "seconds": {"mesh": analysis.mesh_seconds, "solve": analysis.solve_seconds},
+    }
+
+
+def strength_document(result: fem.StaticResult) -> dict[str, Any]:
+    """What decides the safety factor, for JSON, SI units.
+
+    `safety_factor` is None if nothing is stressed, `left_out` (the largest stress that the exclusion leaves out) if it
+    leaves out nothing. `peak_resolved` is False if the estimated error exceeds half of the peak.
+    """
+    hidden = result.left_out
+    left_out = {
+        "stress": hidden.stress,
+        "position": [float(x) for x in hidden.position],
+        "border_distance": hidden.border_distance,
+    }
+    return {
+        "safety_factor": result.safety_factor if math.isfinite(result.safety_factor) else None,
+        "peak_stress": result.peak_stress,
+        "peak_position": [float(x) for x in result.peak_position],
+        "peak_resolved": result.peak_resolved,
+        "stress_50": result.stress_50,
+        "stress_error": result.stress_error,
+        "left_out": left_out if hidden.stress > 0.0 else None,
     }
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import PartWords
 from codesign.report.words import listed, plural
-from codesign.study.config import JointGroupConfig, PartConfig, StudyConfig
+from codesign.study.config import JointGroupConfig, LoadConfig, PartConfig, StudyConfig
 
 TIMES = {0.5: "half", 1.0: "once", 2.0: "twice"}
 
@@ -44,9 +44,16 @@ def part_words(config: StudyConfig) -> dict[str, PartWords]:
 
 
 def _load_case(config: StudyConfig, part: PartConfig) -> str:
-    loads = listed([f"{load.pressing_n:g}\u202fN pressing on face {load.face}" for load in part.loads]) or "no load"
+    loads = listed([_load(load) for load in part.loads]) or "no load"
     held = f"face {listed(part.supports)} held" if part.supports else "not held"
     return f"{loads}, {held} (load model “{config.fem.load}”, support model “{config.fem.support}”)"
+
+
+def _load(load: LoadConfig) -> str:
+    if load.force_n is not None:
+        vector = ", ".join(f"{component:g}" for component in load.force_n)
+        return f"({vector})\u202fN on face {load.face}"
+    return f"{load.pressing_n:g}\u202fN pressing on face {load.face}"
 
 
 def _material(config: StudyConfig, part: PartConfig) -> str:

@@ -91,9 +91,6 @@ def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]
         yield f"{key}.supports", "empty: nothing would hold the part; name the faces that are clamped"
     if not part.loads:
         yield f"{key}.loads", "empty: nothing would load the part"
-    for load in part.loads:
-        if load.pressing_n == 0.0:
-            yield f"{key}.loads", f"pressing_n = 0 on {load.face!r} is no load"
 
 
 def _number_problems(config: StudyConfig) -> Iterator[Problem]:

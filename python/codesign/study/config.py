@@ -45,10 +45,21 @@ class MaterialConfig(Section, frozen=True, kw_only=True):
 
 
 class LoadConfig(Section, frozen=True, kw_only=True):
-    """A total force that presses on a named face, uniformly, against its outward normal."""
+    """A total force on a named face, spread uniformly: either of the two.
+
+    pressing_n: presses against the face's mean outward normal. force_n: a vector in part axes, for round faces, whose
+    normals cancel, say.
+    """
 
     face: Name
-    pressing_n: float
+    pressing_n: float | None = None
+    force_n: Vector3 | None = None
+
+    def __post_init__(self) -> None:
+        if (self.pressing_n is None) == (self.force_n is None):
+            raise ValueError("a load needs either pressing_n or force_n = [x, y, z]")
+        if self.pressing_n == 0.0 or (self.force_n is not None and not any(self.force_n)):
+            raise ValueError("the force of a load is zero")
 
 
 class PartConfig(Section, frozen=True, kw_only=True):
@@ -81,13 +92,18 @@ class RobotConfig(Section, frozen=True, kw_only=True):
 
 
 class FemConfig(Section, frozen=True, kw_only=True):
-    """How part stress is computed; see `codesign.parts.load_case.StressSettings`."""
+    """How part stress is computed; see `codesign.parts.load_case.StressSettings`.
+
+    exclusion: where the peak stress is not read, "local" (in proportion to what is near) or "published" (a fixed
+    distance); see docs/fem.md. exclusion_distance_mm: instead of the rule's own distances; published: 3.
+    """
 
     geometry: Literal["simplified", "full"] = "simplified"
     load: str = "uniform"
     support: str = "published"
     accuracy: Literal["optimisation", "fine", "converged"] = "optimisation"
-    exclusion_distance_mm: NonNegative = 3.0
+    exclusion: Literal["local", "published"] = "local"
+    exclusion_distance_mm: NonNegative | None = None
     tolerance: Positive = 0.05
 
 

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from codesign.errors import CodesignError
+from codesign.errors import CodesignError, ModelError
 from codesign.geometry.shape import face_names
+from codesign.parts.load_case import pressing_direction
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design
 from codesign.robot.assembly import PartBody, assemble
@@ -83,12 +84,18 @@ def _face_problems(part: PartConfig, config: StudyConfig, built: Part) -> Iterat
     if type(built).fem_surface is not Part.fem_surface:
         return  # a surface from elsewhere: its faces are known once it is there
     named = face_names(built.fem_shape(config.fem.geometry))
+    surface = None if hasattr(built, "stress_case") else built.fem_surface(config.fem.geometry)
     for face in part.supports:
         yield from unknown(f"parts.{part.name}.supports", "face", face, named)
     for load in part.loads:
         yield from unknown(f"parts.{part.name}.loads", "face", load.face, named)
         if load.face in part.supports:
             yield f"parts.{part.name}.loads", f"the load acts on {load.face!r}, which is held"
+        if load.pressing_n is not None and surface is not None and load.face in surface.face_names:
+            try:
+                pressing_direction(surface, load.face)
+            except ModelError as error:
+                yield f"parts.{part.name}.loads", f"pressing_n on {error}"
 
 
 def _place_problems(part: PartConfig, robot: RobotDescription, built: Part) -> Iterator[Problem]:

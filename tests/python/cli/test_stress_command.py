@@ -54,7 +54,7 @@ def test_the_edge_length_follows_the_wall(bar):
 
 def test_a_part_of_micrometres(bar):
     document = stress_document(bar, 1e-6, MATERIALS["ergal"], ["normal:-1,0,0"], ["normal:1,0,0: 1e-3 0 0"], 5e-3)
-    assert document["exclusion_distance"] < 11e-6
+    assert document["exclusion"]["largest"] < 11e-6
     assert document["safety_factor"] == pytest.approx(462 / 10, rel=0.4)  # nearer to the clamp
 
 

@@ -23,6 +23,7 @@ from codesign.study.config import StudyConfig
 from codesign.study.loading import study_from
 
 Place = tuple[str | int, ...]
+EITHER = ("pressing_n", "force_n")  # of a load: one of the two
 NAN, INFINITY = math.nan, math.inf
 WHOLE = """
 [[parts]]
@@ -113,7 +114,8 @@ def complete(raw: dict[str, Any]) -> None:
     pose = {"xyz_mm": [0.0, 0.0, 0.0], "rpy_deg": [0.0, 0.0, 0.0]}
     place |= {"link_T_part": copy.deepcopy(pose), "mirror": "y"}
     place["joints"]["front_roll"]["interface_T_child"] = pose
-    raw["fem"] |= {"load": "uniform", "support": "published"}
+    raw["parts"][0]["loads"].append({"face": "seat", "force_n": [0.0, 0.0, -10.0]})
+    raw["fem"] |= {"load": "uniform", "support": "published", "exclusion_distance_mm": 3.0}
     raw["flight"] |= {"jet_model": "turbine", "duration_s": 0.08}
     raw["flight"]["initial_state"] |= {"base_rpy_deg": [0.0, 0.0, 0.0], "free_fall_first_step": True}
     raw["flight"]["joint_groups"][0]["range_scale"] = 1.0
@@ -151,6 +153,8 @@ def places(kind: kinds.Type, node: Any, place: Place = ()) -> Iterator[tuple[Pla
         yield place, kind
     if isinstance(kind, kinds.StructType):
         for field in kind.fields:
+            if field.encode_name in EITHER and field.encode_name not in node:
+                continue
             assert field.encode_name in node, f"{place}: the template lacks {field.encode_name}"
             yield from places(field.type, node[field.encode_name], (*place, field.encode_name))
     elif isinstance(kind, kinds.DictType) and node:
@@ -159,7 +163,8 @@ def places(kind: kinds.Type, node: Any, place: Place = ()) -> Iterator[tuple[Pla
     elif isinstance(kind, kinds.TupleType):
         yield from places(kind.item_types[0], node[0], (*place, 0))
     elif isinstance(kind, kinds.CollectionType) and node:
-        yield from places(kind.item_type, node[0], (*place, 0))
+        for index in range(len(node) if place[-1] == "loads" else 1):
+            yield from places(kind.item_type, node[index], (*place, index))
 
 
 def at(raw: Any, place: Place) -> Any:

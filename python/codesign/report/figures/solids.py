@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -47,29 +46,16 @@ def stress(data: FigureData) -> Any:
         highest = max(detail.parts[part].peak for _, detail in shown.values())
         for row, (name, (evaluation, detail)) in enumerate(shown.items()):
             axes = grid[row, column]
-            _picture(axes, _stress_picture(detail.parts[part], highest))
+            show_picture(axes, _stress_picture(detail.parts[part], highest))
             numbers = evaluation.parts.get(part, {})
             factor = f": safety factor {numbers['safety_factor']:.1f}" if numbers.get("safety_factor") else ""
             axes.set_title(f"{words(part)}, {name}{factor}", pad=2)
-        _stress_bar(figure, grid[:, column], highest)
+        stress_bar(figure, grid[:, column], highest)
     return figure
 
 
-def write_stress_picture(part: StressField, title: str, path: Path) -> Path:
-    """PNG of one part coloured by von Mises stress; the scale ends at the peak that decides the safety factor."""
-    from matplotlib.figure import Figure
-
-    with style.style():
-        figure = Figure(figsize=(style.COLUMN * 1.4, style.COLUMN))
-        axes = figure.subplots()
-        _picture(axes, _stress_picture(part, part.peak))
-        axes.set_title(title)
-        _stress_bar(figure, axes, part.peak)
-        figure.savefig(path, format="png", metadata={"Software": None})
-    return path
-
-
-def _stress_bar(figure: Any, axes: Any, highest: float) -> None:
+def stress_bar(figure: Any, axes: Any, highest: float) -> None:
+    """Colour bar of von Mises stress from 0 to `highest` [Pa]."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -101,7 +87,7 @@ def parts_on_robot(data: FigureData) -> Any:
         joints, base = posture(data, evaluation)
         bodies, near = close_up(robot_scene(data.study, evaluation.design), joints, base)
         view = view or fitting_view(near, *facing(base), aspect=0.95)
-        _picture(axes, render(bodies, view, 760, 800))
+        show_picture(axes, render(bodies, view, 760, 800))
         values = ", ".join(
             f"{data.run.label(v).lower()} {value_text(evaluation.design[v.name])}" for v in data.run.variables
         )
@@ -211,8 +197,8 @@ def snapshots(data: FigureData) -> Any:
     view = fitting_view(bodies, yaw - 90.0, 6.0, aspect=1.5)
     figure = Figure(figsize=(style.PAGE, style.PAGE / 1.5))
     axes = figure.subplots()
-    _picture(axes, render(bodies, view, 1500, 1000), view)
-    path = _on_screen(view, flight["com"])
+    show_picture(axes, render(bodies, view, 1500, 1000), view)
+    path = on_screen(view, flight["com"])
     axes.plot(*path.T, color=style.BLUE, linewidth=0.8, zorder=0)
     for k in rows:
         label = f"{flight['time'][k]:.0f} s"
@@ -230,7 +216,7 @@ def _spread_over_path(flight: FlightHistory) -> list[int]:
     return [int(min(k, len(length) - 1)) for k in rows] + [len(length) - 1]
 
 
-def _picture(axes: Any, image: NDArray[np.uint8], view: View | None = None) -> None:
+def show_picture(axes: Any, image: NDArray[np.uint8], view: View | None = None) -> None:
     """An image without axes; with a view, coordinates are metres on the screen, from its centre."""
     extent = None
     if view is not None:
@@ -241,7 +227,7 @@ def _picture(axes: Any, image: NDArray[np.uint8], view: View | None = None) -> N
     axes.set_axis_off()
 
 
-def _on_screen(view: View, points: Array) -> Array:
+def on_screen(view: View, points: Array) -> Array:
     """Screen coordinates (n, 2) [m] of points (n, 3)."""
     return np.asarray((points - np.array(view.centre)) @ view.axes()[:2].T)
 

@@ -214,10 +214,15 @@ class JetpackBracket(Part):
         aside = np.array([0.0, moment / floor, 0.0]) * MILLIMETRE  # centroid of half of the floor
         centre = self.turbine_axis if settings.load == "thrust_line" else self.seat_centre
         (load,) = settings.loads
+        force = load.along(self.slab_normal)
+        if force[1] != 0.0:
+            raise GeometryError(
+                f"{self.name}: the half y >= 0 is analysed: a force with a y component cannot be applied"
+            )
         whole = settings.geometry == "full"
         traction = _core.fem.AffineTraction(
             _core.fem.Selection(faces=[load.face]),
-            0.5 * load.force * self.slab_normal,
+            0.5 * force,
             centre + aside,
             np.zeros(3),
             None if whole else _core.fem.Disc(self.seat_centre, self.slab_normal, self.seat_radius),

@@ -238,7 +238,7 @@ class ForearmJetSupport(Part):
         (load,) = settings.loads
         traction = _core.fem.AffineTraction(
             _core.fem.Selection(faces=[load.face]),
-            load.force * np.array([1.0, 0.0, 0.0]),
+            load.along((1.0, 0.0, 0.0)),
             self.turbine_axis if settings.load == "thrust_line" else self.seat_centroid,
             np.zeros(3),
             None,

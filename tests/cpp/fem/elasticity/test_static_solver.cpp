@@ -7,6 +7,7 @@
 #include "errors.hpp"
 #include "fem/elasticity/static_solver.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "fem/model_error.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;
@@ -320,8 +321,22 @@ TEST(StaticSolver, RefusesWhatCannotBeSolved) {
   StaticSettings everywhere;
   everywhere.exclusion_distance = 10.0;
   EXPECT_THROW(solve_static({mesh, kSteel, {root}, {Force{kTip(mesh), {1, 0, 0}}}, everywhere}),
-               std::invalid_argument);
+               codesign::ModelError);
   Support moved = root;
   moved.displacement = Points::Ones(1, 3);
-  EXPECT_THROW(solve_static({mesh, kSteel, {root, moved}, {}, {}}), std::invalid_argument);
+  EXPECT_THROW(solve_static({mesh, kSteel, {root, moved}, {}, {}}), codesign::ModelError);
+}
+
+TEST(StaticSolver, RefusesLoadsWithoutEffect) {
+  const TetMesh mesh = beam(1);
+  const Support root{kRoot(mesh)};
+  const Force held{kRoot(mesh), {0, 0, 1}}, tip{kTip(mesh), {0, 0, 1}};
+  const Force back{kTip(mesh), {0, 0, -1}};
+  const StaticSystem system(mesh, kSteel, {root});
+  EXPECT_THROW(system.solve({held}), codesign::ModelError);
+  EXPECT_THROW(system.displacement({held}), codesign::ModelError);
+  EXPECT_THROW(system.solve({tip, held}), codesign::ModelError);
+  EXPECT_THROW(system.solve({tip, back}), codesign::ModelError);
+  EXPECT_THROW(system.solve({}), codesign::ModelError);
+  EXPECT_GT(system.solve({tip}).peak_stress, 0.0);
 }
