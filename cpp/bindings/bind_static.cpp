@@ -138,6 +138,8 @@ void bind_result(py::module_& m) {
       .def_readonly("stress_50", &StaticResult::stress_50, "Pa")
       .def_readonly("safety_factor", &StaticResult::safety_factor,
                     "yield strength over peak_stress; inf if nothing is stressed")
+      .def_readonly("counts_for_peak", &StaticResult::counts_for_peak,
+                    "(n) False where the peak stress is not read")
       .def_readonly("left_out", &StaticResult::left_out)
       .def_readonly("exclusion_smallest", &StaticResult::exclusion_smallest,
                     "m, of the distances kept from borders")

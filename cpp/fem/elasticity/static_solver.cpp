@@ -175,6 +175,7 @@ struct StaticSystem::Data {
     if (hidden.triangle >= 0) {
       r.left_out = {hidden.value, hidden.position, zone.border_distance(hidden.position)};
     }
+    r.counts_for_peak = counted_nodes(mesh, zone);
     r.exclusion_smallest = zone.smallest();
     r.exclusion_largest = zone.largest();
     RecoveryError recovery = recovery_error(mesh, material, u, r.stress);

@@ -59,4 +59,17 @@ void ExclusionZone::set_local(const TetMesh& mesh, const HeldAndLoaded& faces,
   }
 }
 
+NodeFlags counted_nodes(const TetMesh& mesh, const ExclusionZone& zone) {
+  NodeFlags skipped = NodeFlags::Constant(mesh.nodes.rows(), false), kept = skipped;
+  for (int t = 0; t < mesh.boundary.rows(); ++t) {
+    NodeFlags& flags = zone.skips(t) ? skipped : kept;
+    for (int k = 0; k < mesh.boundary.cols(); ++k) flags[mesh.boundary(t, k)] = true;
+  }
+  NodeFlags counted = kept || !skipped;
+  for (int i = 0; i < mesh.nodes.rows(); ++i) {
+    counted[i] = counted[i] && !zone.contains(mesh.nodes.row(i).transpose());
+  }
+  return counted;
+}
+
 }  // namespace codesign::fem

@@ -69,4 +69,10 @@ class ExclusionZone {
   std::vector<char> skipped_;
 };
 
+using NodeFlags = Eigen::Array<bool, Eigen::Dynamic, 1>;
+
+// Of every node, whether the peak stress may be read there: it lies outside the zone and, on the
+// surface, on a triangle that is not left out as a whole.
+NodeFlags counted_nodes(const TetMesh& mesh, const ExclusionZone& zone);
+
 }  // namespace codesign::fem

@@ -565,6 +565,11 @@ class StaticResult:
     Displacement, stress and safety factor of a part.
     """
     @property
+    def counts_for_peak(self) -> typing.Annotated[numpy.typing.NDArray[numpy.bool], "[m, 1]"]:
+        """
+        (n) False where the peak stress is not read
+        """
+    @property
     def displacement(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
         """
         (n, 3) m

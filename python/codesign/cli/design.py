@@ -144,7 +144,8 @@ def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnaly
         "model": words,
         "load_case": part_words(config)[name].load,
         "material": settings.material.name,
-        "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa",
+        "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa where "
+        "counts_for_peak is 1",
         "design": ", ".join(f"{key} = {value:g}" for key, value in order.design.items()),
         "revision": order.revision,
     }

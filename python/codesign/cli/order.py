@@ -155,7 +155,8 @@ class Order:
                 *_table(
                     ["part", "load case", "model", "safety factor", "peak stress"], self._strength(evaluation, models)
                 ),
-                "The strings in the field data of `stress/*.vtu` say what was analysed.\n",
+                "In `stress/*.vtu`, the peak stress is read where `counts_for_peak` is 1; the strings in the field "
+                "data say what was analysed.\n",
                 "## Units\n",
                 *_table(["files", "units"], [[f"`{files}`", unit] for files, unit in UNITS.items()]),
                 f"Not stated, to be agreed with the workshop: {OPEN.partition(':')[0]}.\n",

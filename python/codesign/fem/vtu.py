@@ -69,8 +69,8 @@ class StressModel:
     def of(cls, mesh: TetMesh, result: StaticResult) -> StressModel:
         """The analysed model.
 
-        At the nodes displacement, stress and von Mises stress. In the elements `error`: how far their own stress is
-        from the recovered one.
+        At the nodes displacement, stress, von Mises stress and `counts_for_peak`: 0 where the peak stress, and with it
+        the safety factor, is not read. In the elements `error`: how far their own stress is from the recovered one.
         """
         return cls(
             np.array(mesh.nodes),
@@ -79,6 +79,7 @@ class StressModel:
                 Field("displacement", np.array(result.displacement), "m", "vector"),
                 Field("stress", np.array(result.stress), "Pa", "symmetric"),
                 Field("von_mises", np.array(result.von_mises), "Pa"),
+                Field("counts_for_peak", np.array(result.counts_for_peak, dtype=np.uint8), "1"),
             ),
             (Field("error", np.array(result.element_error), "Pa"),),
         )

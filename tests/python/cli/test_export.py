@@ -94,6 +94,11 @@ def test_stress_files_name_their_model(out: Path) -> None:
     assert whole.points[:, 1].min() == pytest.approx(-whole.points[:, 1].max(), rel=1e-9)
     assert len(whole.cells) == 2 * len(half.cells)
     assert "N pressing on face seat" in half.strings["load_case"]
+    numbers = json.loads((out / "evaluation.json").read_text())["parts"]["jetpack_bracket"]
+    for file in (half, whole):
+        counted = file.point_data["von_mises"][file.point_data["counts_for_peak"] == 1]
+        assert 0.95 * numbers["peak_stress"] < counted.max() < 1.001 * numbers["peak_stress"]
+        assert file.point_data["von_mises"].max() > 2.0 * numbers["peak_stress"]  # beside the clamp
 
 
 def test_a_part_without_a_place_is_made_once() -> None:

@@ -1,6 +1,7 @@
 """VTU files: what was analysed, where the peak is read, units, tensors; a half model made whole."""
 
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -14,14 +15,19 @@ MATERIAL = fem.Material("ergal", 71.7e9, 0.3, 2810.0, 462e6)
 SIZE = np.array([0.04, 0.01, 0.02])
 
 
-@pytest.fixture(scope="module")
-def half() -> tuple[fem.TetMesh, fem.StaticResult]:
+def solved(exclusion: Literal["local", "published"] = "local") -> tuple[fem.TetMesh, fem.StaticResult]:
     """The half y >= 0 of a cantilever 40 x 20 x 20 mm, bent by a force at its end."""
     mesh = box_mesh((6, 2, 3), lambda nodes: nodes * SIZE)
     root = fem.Support(fem.select_faces(lambda x: x[:, 0] < 1e-6))
     cut = fem.Support(fem.select_faces(lambda x: x[:, 1] < 1e-6), axes="y", symmetry=True)
     end = fem.Force(fem.select_faces(lambda x: x[:, 0] > SIZE[0] - 1e-6), (0.0, 0.0, -100.0))
-    return mesh, fem.solve_static(mesh, MATERIAL, [root, cut], [end], copies=2)
+    return mesh, fem.solve_static(mesh, MATERIAL, [root, cut], [end], copies=2, exclusion=exclusion)
+
+
+@pytest.fixture(scope="module")
+def half() -> tuple[fem.TetMesh, fem.StaticResult]:
+    """With the default exclusion."""
+    return solved()
 
 
 def volumes(nodes: np.ndarray, tets: np.ndarray) -> np.ndarray:
@@ -47,9 +53,27 @@ def test_the_file_says_what_it_holds(half: tuple[fem.TetMesh, fem.StaticResult],
     assert file.active == {"Scalars": "von_mises", "Vectors": "displacement", "Tensors": "stress"}
     assert file.components["stress"] == ["xx", "yy", "zz", "xy", "yz", "zx"]
     assert file.components["displacement"] == ["x", "y", "z"]
-    assert file.units == {"displacement": "m", "stress": "Pa", "von_mises": "Pa", "error": "Pa"}
+    np.testing.assert_array_equal(file.point_data["counts_for_peak"], result.counts_for_peak)
+    assert file.units == {
+        "displacement": "m", "stress": "Pa", "von_mises": "Pa", "counts_for_peak": "1", "error": "Pa",
+    }  # fmt: skip
     assert file.strings["model"] == "half, y ≥ 0"
     assert "coordinates m" in file.strings["units"]
+
+
+@pytest.mark.parametrize("rule", ["local", "published"])
+def test_the_largest_stress_that_counts_is_the_peak(rule: Literal["local", "published"]) -> None:
+    mesh, result = solved(rule)
+    counts = np.asarray(result.counts_for_peak)
+    assert counts.dtype == bool
+    at_clamp = mesh.nodes[:, 0] < 1e-6
+    border = at_clamp & ((mesh.nodes[:, 2] < 1e-6) | (mesh.nodes[:, 2] > SIZE[2] - 1e-6))
+    assert not counts[border].any()
+    assert counts[at_clamp].any() == (rule == "local")  # within a clamp, the published rule reads nowhere
+    assert counts[(mesh.nodes[:, 0] > 0.01) & (mesh.nodes[:, 0] < 0.03)].all()
+    surface = np.unique(mesh.boundary)
+    largest = np.asarray(result.von_mises)[surface[counts[surface]]].max()
+    assert 0.8 * result.peak_stress < largest <= result.peak_stress * (1.0 + 1e-9)
 
 
 def test_a_half_becomes_a_whole(half: tuple[fem.TetMesh, fem.StaticResult]) -> None:
