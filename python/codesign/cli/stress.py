@@ -106,7 +106,8 @@ def _write_files(path: Path, material: fem.Material, solved: Solved, vtu: Path |
             "model": "the surface of the file" + (", facets curved back" if solved.smoothing else ""),
             "load_case": "; ".join(place.words() for place in solved.places),
             "material": material.name,
-            "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa",
+            "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa where "
+            "counts_for_peak is 1",
         }
         write_vtu(StressModel.of(solved.mesh, result), vtu, notes)
     if png is not None:
