@@ -37,8 +37,8 @@ help:
 # --- set-up: each step leaves a stamp and is not done again; files in $(VENV) and build/ hold the folder's path, so a
 # checkout that has been moved is set up again --------------------------------------------------------------------------
 MADE_IN := $(shell cat $(VENV)/folder 2>/dev/null)
-ifneq ($(MADE_IN),)
-ifneq ($(MADE_IN),$(CURDIR))
+ifneq ($(filter-out help clean,$(MAKECMDGOALS)),)
+ifneq ($(filter-out $(CURDIR),$(MADE_IN)),)
 $(info $(VENV) and build were made in $(MADE_IN): setting up again)
 $(shell rm -rf $(VENV) build)
 endif
