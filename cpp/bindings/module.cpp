@@ -2,7 +2,7 @@
 
 #include "bindings/bindings.hpp"
 #include "errors.hpp"
-#include "fem/model_error.hpp"
+#include "model_error.hpp"
 
 namespace py = pybind11;
 

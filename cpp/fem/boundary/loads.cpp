@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "fem/mesh/tet10.hpp"
-#include "fem/model_error.hpp"
+#include "model_error.hpp"
 
 namespace codesign::fem {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "fem/boundary/smooth_patch.hpp"
-#include "fem/model_error.hpp"
+#include "model_error.hpp"
 
 namespace codesign::fem {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/model_error.hpp"
+#include "model_error.hpp"
 
 namespace codesign::fem {
 

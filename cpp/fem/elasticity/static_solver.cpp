@@ -12,8 +12,8 @@
 #include "fem/elasticity/two_level.hpp"
 #include "fem/la/cholesky.hpp"
 #include "fem/la/ordering.hpp"
-#include "fem/model_error.hpp"
 #include "fem/stress/recovery.hpp"
+#include "model_error.hpp"
 
 namespace codesign::fem {
 

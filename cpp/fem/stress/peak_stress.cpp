@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "fem/mesh/tet10.hpp"
-#include "fem/model_error.hpp"
+#include "model_error.hpp"
 
 namespace codesign::fem {
 

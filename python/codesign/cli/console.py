@@ -169,7 +169,7 @@ def print_stress(document: dict[str, Any]) -> None:
     table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
     out.print(table)
     for warning in document["warnings"]:
-        out.print(f"[yellow]warning[/]: {warning}", highlight=False)
+        out.print(Text.assemble(("warning", "yellow"), f": {warning}"))
 
 
 def _millimetres(position: list[float]) -> str:

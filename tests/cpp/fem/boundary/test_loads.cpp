@@ -5,7 +5,7 @@
 
 #include "box_mesh.hpp"
 #include "fem/boundary/loads.hpp"
-#include "fem/model_error.hpp"
+#include "model_error.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;

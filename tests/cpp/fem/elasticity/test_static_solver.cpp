@@ -7,7 +7,7 @@
 #include "errors.hpp"
 #include "fem/elasticity/static_solver.hpp"
 #include "fem/mesh/tet10.hpp"
-#include "fem/model_error.hpp"
+#include "model_error.hpp"
 
 using namespace codesign::fem;
 using Eigen::Vector3d;
