@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 
 from codesign.report.data import ReportData
@@ -66,8 +67,8 @@ def strength(run: ReportData) -> str:
     if run.recommended is None:
         return ""
     parts = run.entries[run.recommended].evaluation.parts
-    factors = {name: part["safety_factor"] for name, part in parts.items() if part.get("safety_factor")}
-    if not factors:
+    factors = {name: factor for name, part in parts.items() if (factor := part.get("safety_factor"))}
+    if not factors or not math.isfinite(min(factors.values())):
         return ""
     weakest = min(factors, key=lambda name: factors[name])
     asked = f" (at least {run.limits['safety_factor'][1]:g} is asked for)" if "safety_factor" in run.limits else ""

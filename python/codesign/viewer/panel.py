@@ -33,7 +33,7 @@ def facts(study: Any, evaluation: Evaluation, original: Evaluation | None) -> st
         lines.append(f"{objective.label}: **{number(value)}** {objective.unit}{change}")
     for name, part in evaluation.parts.items():
         if part.get("safety_factor"):
-            lines.append(f"{words(name)}: safety factor **{part['safety_factor']:.1f}**, {part['mass']:.3f} kg")
+            lines.append(f"{words(name)}: safety factor **{number(part['safety_factor'], 3)}**, {part['mass']:.3f} kg")
     return "\n\n".join(lines + _clearances(evaluation))
 
 

@@ -14,6 +14,8 @@ from codesign.problem.evaluation import Evaluation
 from codesign.report import write_report
 from codesign.report.data import reasons
 from codesign.report.details import detail_key, load_detail, load_details, save_detail
+from codesign.report.page.encode import page_detail
+from codesign.report.page.html import render
 from codesign.report.page.summary import summary
 from codesign.report.pareto import hypervolume_history, knee_distances, late_growth, spread
 from codesign.report.reading import read_report_data
@@ -219,3 +221,31 @@ def test_a_change_from_zero_is_no_number(tmp_path, evaluations):
     assert np.isnan(run.gain(run.recommended)[2])
     text = summary(run)
     assert not re.search(r"\b(nan|inf)\b", text)
+
+
+def test_numbers_that_are_infinite_or_unknown_are_dashes_with_a_reason(tmp_path, evaluations):
+    def odd(evaluation: Evaluation) -> Evaluation:
+        parts = {n: {**p, "safety_factor": float("inf"), "peak_stress": 0.0} for n, p in evaluation.parts.items()}
+        limits = {"safety_factor": float("inf"), "first_frequency": float("nan")}
+        return replace(evaluation, parts=parts, constraints=evaluation.constraints | limits)
+
+    run = report_data(tmp_path / "run", evaluations)
+    entries = tuple(replace(e, evaluation=odd(e.evaluation)) for e in run.entries)
+    text = render(replace(run, entries=entries))
+    rows = embedded(text)["designs"]
+    assert {row["p"][0][1] for row in rows if row["p"][0] and row["id"] is not None} == {None}
+    said = re.sub(r"<[^>]+>", "", re.sub(r"<(script|style).*?</\1>", "", text, flags=re.S))
+    assert not re.search(r"\b(nan|inf|infinity)\b", said, re.IGNORECASE)
+    failed = next(row for row in rows if row["status"] == 2)
+    assert failed["reason"]  # what the page shows over the dash
+    assert failed["f"] == [None, None, None]
+
+
+def test_a_flight_without_counted_joints_has_no_chart_of_them():
+    shown = detail(synthetic_run.evaluate(synthetic_run.BASELINE))
+    flight = shown.flight
+    still = replace(
+        flight, groups=(), arrays=flight.arrays | {"joint_velocity_error": np.empty((len(flight["time"]), 0))}
+    )
+    charts = page_detail(replace(shown, flight=still))["flight"]["charts"]
+    assert [chart["label"] for chart in charts] == ["Position error", "Attitude error", "Jet thrusts"]

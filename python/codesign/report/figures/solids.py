@@ -18,6 +18,7 @@ from codesign.report.figures.data import FigureData
 from codesign.report.figures.flights import sample_at
 from codesign.report.raster import Array, Body, View, fitting_view, render
 from codesign.report.scene import RobotScene, robot_scene, round_number, with_descendants
+from codesign.report.words import number
 from codesign.transforms import Matrix
 
 PART_VIEW = (-55.0, 28.0)  # azimuth, elevation [deg]
@@ -48,7 +49,7 @@ def stress(data: FigureData) -> Any:
             axes = grid[row, column]
             show_picture(axes, _stress_picture(detail.parts[part], highest))
             numbers = evaluation.parts.get(part, {})
-            factor = f": safety factor {numbers['safety_factor']:.1f}" if numbers.get("safety_factor") else ""
+            factor = f": safety factor {number(known, 3)}" if (known := numbers.get("safety_factor")) else ""
             axes.set_title(f"{words(part)}, {name}{factor}", pad=2)
         stress_bar(figure, grid[:, column], highest)
     return figure
