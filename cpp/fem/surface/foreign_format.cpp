@@ -22,7 +22,7 @@ struct Format {
 
 // The first that fits counts.
 constexpr std::array kFormats = {
-    Format{"ISO-10303-21", "", "a STEP file", kExport},
+    Format{"ISO-10303-21", "", "a STEP file", "read it by load_step of codesign.fem.step"},
     Format{"PK\x03\x04", "3D/", "a 3MF file", kConvert},
     Format{"PK\x03\x04", "FreeCAD", "a FreeCAD document", kExport},
     Format{"PK\x03\x04", "Document.xml", "a FreeCAD document", kExport},

@@ -149,6 +149,8 @@ def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:
 
 def print_stress(document: dict[str, Any]) -> None:
     """Text summary of `codesign stress`."""
+    from codesign.cli.stress_file import describe_repair
+
     table = Table(show_header=False, box=None, pad_edge=False)
     factor = document["safety_factor"]
     known = document["safety_factor_reason"] if factor is None else f"{factor:.3g}"
@@ -161,6 +163,8 @@ def print_stress(document: dict[str, Any]) -> None:
     table.add_row("largest displacement", f"{document['max_displacement'] * 1e3:.4g} mm")
     for place in document["places"]:
         table.add_row(f"{place['kind']} {place['selection']}", _describe_place(place))
+    if document["repair"] is not None:
+        table.add_row("repair", describe_repair(document["repair"]))
     if document["smoothing"] is not None:
         table.add_row("facets curved back", _describe_facets(document["smoothing"]))
     if document["facets_literal"] is not None:

@@ -334,10 +334,10 @@ def view(
 
 @app.command(epilog="Example: `codesign stress part.stl --scale 1e-3 --fix near:0,0,0 --load 'normal:0,0,1: 0 0 -250'`")
 def stress(
-    part: Annotated[Path, typer.Argument(metavar="PART.stl", help="Closed surface, binary or ASCII STL.")],
+    part: Annotated[Path, typer.Argument(metavar="PART", help="Closed surface: STL, binary or ASCII, or a STEP file.")],
     fix: Annotated[list[str], typer.Option(metavar="SEL", help="Held in all directions; may be repeated.")],
     load: Annotated[list[str], typer.Option(metavar="'SEL: FX FY FZ'", help="Total force in N; may be repeated.")],
-    scale: Annotated[float, typer.Option(help="Metres per unit of the file and of the selections.")] = 1e-3,
+    scale: Annotated[float, typer.Option(help="Metres per unit of an STL file and of the selections.")] = 1e-3,
     material: Annotated[
         str, typer.Option(help="ergal, aluminium_6061_t6, steel_s235, titanium_ti6al4v, or E_GPa,nu,yield_MPa[,kg/m3].")
     ] = "ergal",
@@ -353,6 +353,15 @@ def stress(
     smooth: Annotated[
         bool, typer.Option("--smooth", help="The file is a coarse tessellation of curved faces: curve its facets back.")
     ] = False,
+    repair: Annotated[
+        bool,
+        typer.Option(
+            "--repair", help="Make one solid of a file with doubled or turned facets, gaps, overlapping bodies."
+        ),
+    ] = False,
+    no_simplify: Annotated[
+        bool, typer.Option("--no-simplify", help="Keep edges that are tiny (0.05 mm) beside the elements.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Safety factor of any closed surface; exit code 1 if the material yields.
@@ -364,7 +373,18 @@ def stress(
     from codesign.cli.stress_options import find_material
 
     document = stress_document(
-        part, scale, find_material(material), fix, load, edge_length, vtu, png, exclusion, smooth
+        part,
+        scale,
+        find_material(material),
+        fix,
+        load,
+        edge_length,
+        vtu,
+        png,
+        exclusion,
+        smooth,
+        repair,
+        not no_simplify,
     )
     if as_json:
         print_json(document)

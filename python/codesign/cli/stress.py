@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from codesign import fem
+from codesign.cli.stress_file import load_file, repair_document, unit_hints
 from codesign.cli.stress_mesh import default_edge_length, literal_facets, mesh_places
 from codesign.cli.stress_options import StressInputError, parse_load, parse_selection
 from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
@@ -44,6 +45,8 @@ def stress_document(
     png: Path | None = None,
     exclusion_mm: float | None = None,
     smooth: bool = False,
+    repair: bool = False,
+    simplify: bool = True,
 ) -> dict[str, Any]:
     """Meshes, solves and gives the JSON document of `codesign stress` (docs/fem.md); SI units.
 
@@ -54,6 +57,7 @@ def stress_document(
         exclusion_mm: the peak stress is read farther than this from borders of clamps and from sharp pocket edges that
             border a load; in proportion to the local feature if absent.
         smooth: take the file for a tessellation of curved faces and curve its facets back before meshing.
+        repair: of a file that bounds no solid as it is (`fem.repair_surface`). simplify: tiny edges before meshing.
 
     Raises: MeshError, SolverError, StressInputError.
     """
@@ -68,9 +72,13 @@ def stress_document(
         asked.append(PlacedText(text.rpartition(":")[0].strip(), place, force))
     edge_length = None if edge_length_mm is None else edge_length_mm * MILLIMETRE
     exclusion = None if exclusion_mm is None else exclusion_mm * MILLIMETRE
-    solved = _solve(fem.load_surface(path, scale), asked, material, edge_length, exclusion, smooth)
+    surface, repaired = load_file(path, scale, repair)
+    solved = _solve(surface, asked, material, edge_length, exclusion, smooth, simplify)
     _write_files(path, material, solved, vtu, png)
-    return _document(path, material, solved, smooth)
+    document = _document(path, material, solved, smooth)
+    document["repair"] = repair_document(repaired)
+    document["warnings"] += unit_hints(surface, scale, solved.result.max_displacement)
+    return document
 
 
 def _solve(
@@ -80,10 +88,11 @@ def _solve(
     edge_length: float | None,
     exclusion: float | None,
     smooth: bool,
+    simplify: bool,
 ) -> Solved:
     start = time.perf_counter()
     size = default_edge_length(surface) if edge_length is None else edge_length
-    mesh, named, smoothing = mesh_places(surface, [placed.place for placed in asked], size, smooth)
+    mesh, named, smoothing = mesh_places(surface, [placed.place for placed in asked], size, smooth, simplify)
     places = caught_places(asked, named, mesh, size)
     supports = [fem.Support(place.selection) for place in places if place.asked.force is None]
     loads = [fem.Force(p.selection, p.asked.force) for p in places if p.asked.force is not None]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,7 @@ def _smoothing(report: fem.SmoothReport) -> dict[str, Any]:
 
 
 def mesh_places(
-    surface: fem.SurfaceMesh, places: Sequence[Place], size: float, smooth: bool
+    surface: fem.SurfaceMesh, places: Sequence[Place], size: float, smooth: bool, simplify: bool
 ) -> tuple[fem.TetMesh, Labelled, dict[str, Any] | None]:
     """The mesh, the places on it, and the smoothing; the facets themselves if their smooth surface cannot be meshed.
 
@@ -58,15 +59,15 @@ def mesh_places(
     """
     named = label_surface(surface, places)
     if not smooth:
-        return *_mesh_either(named.surface, lambda: surface, named, places, size), None
+        return *_mesh_either(named.surface, lambda: surface, named, places, size, simplify), None
     curved, report = fem.smooth_surface(named.surface)
     try:
-        meshed = _mesh_either(curved, lambda: fem.smooth_surface(surface)[0], named, places, size)
+        meshed = _mesh_either(curved, lambda: fem.smooth_surface(surface)[0], named, places, size, simplify)
         return *meshed, _smoothing(report)
     except MeshError as error:
         reason = f"the curved surface cannot be meshed ({error}): facets taken literally"
         unused = {"facets": 0, "max_distance": 0.0, "volume_change": 0.0, "left": report.facets, "reason": reason}
-        return *_mesh_either(named.surface, lambda: surface, named, places, size), unused
+        return *_mesh_either(named.surface, lambda: surface, named, places, size, simplify), unused
 
 
 def _mesh_either(
@@ -75,13 +76,15 @@ def _mesh_either(
     named: Labelled,
     places: Sequence[Place],
     size: float,
+    simplify: bool,
 ) -> tuple[fem.TetMesh, Labelled]:
     """The mesh and the places on it, with exact borders unless they are too ragged for the edge length.
 
     plain: makes the surface without the places' borders, which is rarely needed.
     """
+    tetrahedralize = fem.tetrahedralize if simplify else partial(fem.tetrahedralize, simplify=0.0)
     try:
-        return fem.tetrahedralize(labelled, size), named
+        return tetrahedralize(labelled, size), named
     except MeshError:
-        mesh = fem.tetrahedralize(plain(), size)
+        mesh = tetrahedralize(plain(), size)
         return mesh, replace(named, selections=[place.on_mesh() for place in places])

@@ -1,33 +1,14 @@
 """Surfaces as files bring them: what is wrong is said, and repair gives the solid that was meant."""
 
-import struct
-
 import manifold3d
 import numpy as np
 import pytest
 
 from codesign import fem
 from codesign.errors import MeshError
+from stl_files import box, facets_of, stl
 
-BOX = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6]])
-BOX = np.concatenate([BOX, [[0, 6, 4], [1, 5, 7], [1, 7, 3]]])
 CUBE = ((0, 0, 0), (10, 10, 10))
-
-
-def box(lower, upper, inside_out=False):
-    """Facets (12, 3, 3) mm of a box."""
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-    facets = (np.asarray(lower) + corners * (np.asarray(upper) - lower))[BOX]
-    return facets[:, ::-1] if inside_out else facets
-
-
-def stl(path, *facets):
-    """Binary STL of facets in millimetres."""
-    all_facets = np.concatenate(facets)
-    record = np.zeros(len(all_facets), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
-    record["corners"] = all_facets
-    path.write_bytes(bytes(80) + struct.pack("<I", len(record)) + record.tobytes())
-    return path
 
 
 @pytest.fixture
@@ -156,7 +137,7 @@ def test_a_sound_surface_keeps_its_arrays_and_names(read):
 @pytest.mark.parametrize(
     ("start", "named"),
     [
-        (b"ISO-10303-21;\nHEADER;\n", "a STEP file: export"),
+        (b"ISO-10303-21;\nHEADER;\n", "a STEP file: read it by load_step"),
         (b"# Blender\nmtllib a.mtl\no Cube\nv 1.0 1.0 -1.0\nf 1 2 3\n", "an OBJ file: convert"),
         (b"v 1 1 1\nv 1 0 0\nf 1 2 3\n", "an OBJ file"),
         (b"PK\x03\x04\x14\x00____3D/3dmodel.model", "a 3MF file"),
@@ -180,12 +161,6 @@ def test_other_formats_are_named(tmp_path, start, named, length):
     path.write_bytes(start + b" " * length)
     with pytest.raises(MeshError, match=f"part.stl: not an STL file but .*{named}"):
         fem.load_surface(path)
-
-
-def facets_of(body):
-    """Facets (m, 3, 3) of a body of manifold3d."""
-    mesh = body.to_mesh64()
-    return np.asarray(mesh.vert_properties)[np.asarray(mesh.tri_verts, dtype=int)]
 
 
 def test_simplification_does_not_make_a_sound_surface_cross_itself(tmp_path):

@@ -1,0 +1,132 @@
+"""File of `codesign stress`: read, checked, repaired on request; hints where its units look wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from codesign import fem
+from codesign.errors import MeshError
+from codesign.units import MILLIMETRE
+
+SMALLEST = 1e-3  # m: a smaller part is more likely a file in metres
+LARGEST = 20.0  # m: a larger part is more likely a file in millimetres
+MOST_DISPLACEMENT = 0.1  # of the extent: beyond it, small displacements are no sensible assumption
+
+
+def load_file(path: Path, scale: float, repair: bool) -> tuple[fem.SurfaceMesh, fem.RepairReport | None]:
+    """The solid of an STL or STEP file with faces by angle, and what its repair changed if that was asked for.
+
+    scale: metres per unit of an STL file; STEP files know their unit.
+
+    Raises: MeshError: what is wrong with the file, and whether --repair would help.
+    """
+    surface = _read(path, scale)
+    if repair:
+        try:
+            repaired, report = fem.repair_surface(surface)
+        except MeshError as error:
+            raise MeshError(f"{path}: {error}") from None
+        return fem.label_by_angle(repaired), report
+    try:
+        fem.check_surface(surface)
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}; {_remedy(surface)}") from None
+    return fem.label_by_angle(surface), None
+
+
+def _read(path: Path, scale: float) -> fem.SurfaceMesh:
+    try:
+        with path.open("rb") as file:
+            is_step = file.read(64).lstrip().startswith(b"ISO-10303-21")
+    except OSError as error:
+        raise MeshError(f"{path}: {error.strerror}") from None
+    if is_step:
+        from codesign.fem.step import load_step
+
+        return load_step(path).surface
+    return fem.read_stl(path, scale)
+
+
+def _remedy(surface: fem.SurfaceMesh) -> str:
+    try:
+        fem.repair_surface(surface)
+    except MeshError:
+        return "--repair does not help"
+    return "--repair mends it"
+
+
+def repair_document(report: fem.RepairReport | None) -> dict[str, Any] | None:
+    """What the repair changed, SI units; None if it was not asked for."""
+    if report is None:
+        return None
+    return {
+        "changed": report.changed,
+        "reason": report.reason,
+        "tolerance": report.tolerance,
+        "largest_shift": report.largest_shift,
+        **{
+            name: {"before": before, "after": after}
+            for name, (before, after) in (
+                ("volume", report.volume),
+                ("area", report.area),
+                ("triangles", report.triangles),
+                ("bodies", report.bodies),
+            )
+        },
+        "doubled_facets": report.doubled,
+        "flat_facets": report.flat,
+        "t_junctions": report.t_junctions,
+        "merged_points": report.merged_points,
+        "turned_facets": report.turned,
+        "turned_shells": report.turned_shells,
+        "united_bodies": report.united,
+        "simplified": report.simplified,
+    }
+
+
+def describe_repair(repair: dict[str, Any]) -> str:
+    """One line for the terminal."""
+    if not repair["changed"]:
+        return "nothing to repair"
+    counted = {
+        "doubled_facets": "doubled facets dropped",
+        "flat_facets": "flat facets dropped",
+        "t_junctions": "T-junctions closed",
+        "merged_points": "points merged",
+        "turned_facets": "facets turned",
+        "turned_shells": "shells turned outward",
+        "united_bodies": "bodies united",
+    }
+    done = [f"{repair[key]} {words}" for key, words in counted.items() if repair[key]]
+    if repair["simplified"]:
+        done.append("tiny triangles simplified")
+    before, after = repair["volume"]["before"], repair["volume"]["after"]
+    volume = f"{after * 1e9:.4g} mm³" if before is None else f"{before * 1e9:.4g} → {after * 1e9:.4g} mm³"
+    counts = ", ".join(f"{repair[key]['before']} → {repair[key]['after']} {key}" for key in ("triangles", "bodies"))
+    area = f"{repair['area']['before'] * 1e6:.4g} → {repair['area']['after'] * 1e6:.4g} mm²"
+    shift, tolerance = (repair[key] / MILLIMETRE for key in ("largest_shift", "tolerance"))
+    moved = f"largest shift {shift:.2g} mm (tolerance {tolerance:.2g})"
+    return f"{', '.join(done)}: volume {volume}, area {area}, {counts}, {moved}"
+
+
+def unit_hints(surface: fem.SurfaceMesh, scale: float, max_displacement: float) -> list[str]:
+    """Doubts about the units of a file read with `scale` metres per unit, from size and displacement [m]."""
+    box = np.ptp(surface.points, axis=0)
+    extent = float(np.linalg.norm(box))
+    size = " x ".join(f"{side / MILLIMETRE:.3g}" for side in box) + " mm"
+    hints = []
+    if extent < SMALLEST and scale >= MILLIMETRE:
+        hints.append(f"the part is only {size}: is the file in metres (--scale {1e3 * scale:g})?")
+    elif extent > LARGEST:
+        hints.append(f"the part is {size}: is the file in smaller units (--scale {1e-3 * scale:g})?")
+    if max_displacement > MOST_DISPLACEMENT * extent:
+        share = max_displacement / extent
+        times = f"{share:.0f} times" if share >= 2.0 else f"{share:.0%} of"
+        hints.append(
+            f"the largest displacement is {times} the part, small ones are assumed: check the forces, the material and "
+            "the units of the file (--scale)"
+        )
+    return hints
