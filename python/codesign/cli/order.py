@@ -18,6 +18,7 @@ from codesign.parts.component import Component, distinct_parts
 from codesign.parts.part import MirroredPart, Part
 from codesign.problem.design_space import Design
 from codesign.problem.evaluation import Evaluation
+from codesign.report.objections import objections
 from codesign.report.study_words import part_words
 from codesign.units import MEGA
 
@@ -130,6 +131,9 @@ class Order:
         ]
         if evaluation.status != "feasible":
             head.append(f"**This design is {evaluation.status}: {evaluation.reason}**\n")
+        else:
+            against = [objection.text for objection in objections(evaluation, {}) if objection.final]
+            head += [f"**Not to be built: {text}.**\n" for text in against]
         values = [[name, f"{item['value']:.10g}", item["unit"]] for name, item in self.values.items()]
         parts = []
         for part in distinct_parts(self.components):

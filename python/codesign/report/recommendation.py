@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections import Counter
 
+import numpy as np
+
 from codesign.report.data import ReportData
 from codesign.report.objections import UNSETTLED
-from codesign.report.words import EQUAL, combinations, listed, plural
+from codesign.report.words import EQUAL, combinations, listed, percent, plural
 
+CLEARLY = 0.1  # logarithm of the product of the objectives: a tenth better in one of them, say
 SETTLED = 0.01  # of the front's hypervolume: what the last quarter of a settled search adds at most
 
 
@@ -59,6 +62,29 @@ def price(run: ReportData) -> str:
         f"Its price: {listed(lost)} above the lowest among them."
         if lost
         else "It is also the best in every single objective."
+    )
+
+
+def second_opinion(run: ReportData) -> str:
+    """The choice whose objectives have the lowest product, if it trades clearly better than the recommended design.
+
+    The knee weighs the whole range of each objective alike, even one that hardly varies; the product weighs alike what
+    changes by the same share.
+    """
+    values = run.values[run.choices]
+    if run.recommended is None or not (values > 0.0).all():
+        return ""
+    product = np.log(values).sum(axis=1)
+    here, other = run.choices.index(run.recommended), int(np.argmin(product))
+    if product[here] - product[other] < CLEARLY:
+        return ""
+    changes = [
+        f"{o.label.lower()} {percent(now / before - 1.0)}"
+        for o, now, before in zip(run.objectives, values[other], values[here], strict=True)
+    ]
+    return (
+        f"Look at design {run.entries[run.choices[other]].id} too: where equal percentages count alike it is the "
+        f"better trade, with {listed(changes)} against the recommended one."
     )
 
 

@@ -12,7 +12,7 @@ from codesign.report.evidence import evidence
 from codesign.report.objections import objections
 from codesign.report.page.summary import summary
 from codesign.report.reading import read_report_data
-from codesign.report.recommendation import left_out, price, reservations, strength, why
+from codesign.report.recommendation import left_out, price, reservations, second_opinion, strength, why
 from codesign.report.validation import Disturbance, Flight, Validation
 
 STUDY = synthetic_run.Study()
@@ -158,3 +158,21 @@ def test_a_gain_is_green_only_where_all_other_flights_agree(tmp_path, evaluation
     mixed = evidence(run, flights(run, [-0.02, 0.01, -0.015]), 2)
     assert (mixed.sense, mixed.text) == ("", "not certain: −2.0\u202f% … +1.0\u202f% in 3 other flights")
     assert "big open" in summary(run)
+
+
+def test_a_knee_that_pays_much_for_little_names_the_better_trade(tmp_path, evaluations):
+    """Thrust varies by 3 % over the front, momentum by a factor: the knee weighs both ranges alike."""
+    feasible = [e for e in evaluations if e.status == "feasible"][:3]
+    trades = [(1.0, 0.2, 103.0), (2.6, 0.2, 101.0), (6.0, 0.2, 100.0)]
+    made = [
+        replace(e, objectives=dict(zip(("momentum", "joint_velocity", "thrust"), values, strict=True)))
+        for e, values in zip(feasible, trades, strict=True)
+    ]
+    run = replace(report_data(tmp_path / "run", made), baseline=None)
+    assert run.recommended == 1
+    said = second_opinion(run)
+    assert said.startswith(f"Look at design {run.entries[0].id} too")
+    assert "momentum error −61.5\u202f%" in said
+    assert "thrust +2.0\u202f%" in said
+    assert said in summary(run)
+    assert second_opinion(replace(run, entries=run.entries[:1])) == ""

@@ -90,7 +90,7 @@ def _build(run: ReportData) -> str:
     said = [
         recommendation.remedy(run),
         recommendation.why(run),
-        recommendation.price(run),
+        f"{recommendation.price(run)} {recommendation.second_opinion(run)}",
         recommendation.strength(run),
         recommendation.unchecked(run),
     ]
