@@ -9,6 +9,7 @@
 #include "bindings/py_model.hpp"
 #include "dynamics/centroidal.hpp"
 #include "dynamics/urdf.hpp"
+#include "dynamics/urdf_text.hpp"
 #include "errors.hpp"
 
 namespace py = pybind11;
@@ -285,6 +286,20 @@ void bind_model(py::module_& m) {
                " joints, " + (model.fixed_base ? "fixed" : "floating") + " base, " +
                py::str(py::float_(model.total_mass)).cast<std::string>() + " kg>";
       });
+  m.attr("MAX_URDF_BYTES") = dynamics::kMaxUrdfBytes;
+  m.def(
+      "check_inertia",
+      [](const std::string& link, double mass, const Array& inertia) {
+        if (inertia.ndim() != 2 || inertia.shape(0) != 3 || inertia.shape(1) != 3) {
+          throw std::invalid_argument("inertia must have shape (3, 3), got " + shape_of(inertia));
+        }
+        const Eigen::Map<const Eigen::Matrix3d> symmetric(inertia.data());
+        dynamics::check_inertia({mass, Eigen::Vector3d::Zero(), symmetric}, link);
+      },
+      py::arg("link"), py::arg("mass"), py::arg("inertia"),
+      R"(Refuses a mass [kg] with an inertia (3, 3) [kg m2] about the center of mass that no body can have.
+
+Raises: UrdfError naming the link and its principal moments.)");
   m.def("load_urdf", &load_urdf, py::arg("text_or_path"), py::arg("joints") = py::none(),
         py::arg("as_published") = false, py::arg("fixed_base") = false,
         R"(The robot in a URDF, given as text or as the path of a file.

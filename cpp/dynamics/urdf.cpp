@@ -346,6 +346,10 @@ Model load_text(const std::string& text, const UrdfOptions& options) {
 
 }  // namespace
 
+void check_inertia(const RigidInertia& body, const std::string& link) {
+  check_link_inertia(body, link, false);
+}
+
 Model load_urdf(const std::string& text_or_path, const UrdfOptions& options) {
   if (is_text(text_or_path)) return load_text(text_or_path, options);
   const std::string text = read_file(text_or_path);

@@ -25,4 +25,9 @@ struct UrdfOptions {
 // Throws UrdfError naming the element for anything that cannot be simulated.
 Model load_urdf(const std::string& text_or_path, const UrdfOptions& options = {});
 
+// The rule for what mass, and inertia about the center of mass, of a link a body can have: point
+// masses and thin rods pass, and tensors that miss the triangle inequality by rounding.
+// Throws UrdfError naming the link and its principal moments.
+void check_inertia(const RigidInertia& body, const std::string& link);
+
 }  // namespace codesign::dynamics

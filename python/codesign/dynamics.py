@@ -1,6 +1,7 @@
 """Rigid-body dynamics of robots described by URDF, box-constrained QPs and jet-powered flight."""
 
 from codesign._core.dynamics import (
+    MAX_URDF_BYTES,
     Actuator,
     BoxQpResult,
     BoxQpSolver,
@@ -33,6 +34,7 @@ from codesign._core.dynamics import (
     centroidal_momentum,
     centroidal_momentum_bias,
     centroidal_momentum_matrix,
+    check_inertia,
     forward_dynamics,
     frame_bias_acceleration,
     frame_jacobian,
@@ -52,6 +54,7 @@ from codesign._core.dynamics import (
 )
 
 __all__ = [
+    "MAX_URDF_BYTES",
     "Actuator",
     "BoxQpResult",
     "BoxQpSolver",
@@ -84,6 +87,7 @@ __all__ = [
     "centroidal_momentum",
     "centroidal_momentum_bias",
     "centroidal_momentum_matrix",
+    "check_inertia",
     "forward_dynamics",
     "frame_bias_acceleration",
     "frame_jacobian",

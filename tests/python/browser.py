@@ -6,17 +6,17 @@ from contextlib import contextmanager
 from typing import Any
 
 import pytest
+from playwright.sync_api import sync_playwright
 
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 def open_browser() -> Iterator[Any]:
-    """A Chromium driven by playwright; skips the test where one of them is missing."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    """A Chromium driven by playwright; skips the test where the machine has none."""
     executable = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if executable is None:
         pytest.skip("no Chromium on this machine (apt: chromium)")
-    with playwright.sync_playwright() as driver:
+    with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=executable, args=FLAGS)
         yield browser
         browser.close()

@@ -1,12 +1,11 @@
 """Third-party robots for the tests, and random states."""
 
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, files
+from importlib.metadata import files
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-import pytest
 
 from codesign import dynamics as dyn
 
@@ -22,10 +21,7 @@ class Robot:
     as_published: bool = False
 
     def file(self) -> Path:
-        try:
-            found = [f for f in files(self.package) or [] if str(f).endswith(self.path)]
-        except PackageNotFoundError:
-            pytest.skip(f"{self.package} is not installed")
+        found = [f for f in files(self.package) or [] if str(f).endswith(self.path)]
         return Path(str(found[0].locate())).resolve()
 
     def joints(self) -> list[str]:

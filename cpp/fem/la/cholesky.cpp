@@ -47,11 +47,13 @@ class OneThread {
 
 }  // namespace
 
-struct CholeskyFactor::Data {
-  cholmod_common common;
-  cholmod_factor* factor = nullptr;
+namespace {
 
-  Data() {
+// CHOLMOD's settings and workspace.
+struct Workspace {
+  cholmod_common common;
+
+  Workspace() {
     cholmod_start(&common);
     common.print = 0;
     common.supernodal = CHOLMOD_SUPERNODAL;
@@ -60,12 +62,17 @@ struct CholeskyFactor::Data {
     common.postorder = 0;
     common.quick_return_if_not_posdef = 1;
   }
-  Data(const Data&) = delete;
-  Data& operator=(const Data&) = delete;
-  ~Data() {
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
-  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+  ~Workspace() { cholmod_finish(&common); }
+};
+
+}  // namespace
+
+struct CholeskyFactor::Data : Workspace {
+  cholmod_factor* factor = nullptr;
+
+  ~Data() { cholmod_free_factor(&factor, &common); }
 };
 
 namespace {
@@ -194,6 +201,7 @@ CholeskyFactor& CholeskyFactor::operator=(CholeskyFactor&&) noexcept = default;
 
 Eigen::MatrixXd CholeskyFactor::solve(const Eigen::MatrixXd& right_hand_side) const {
   const OneThread guard;
+  Workspace workspace;  // of this call: CHOLMOD writes to it, and calls may run side by side
   cholmod_dense b{};
   b.nrow = b.d = static_cast<std::size_t>(right_hand_side.rows());
   b.ncol = static_cast<std::size_t>(right_hand_side.cols());
@@ -201,11 +209,11 @@ Eigen::MatrixXd CholeskyFactor::solve(const Eigen::MatrixXd& right_hand_side) co
   b.x = const_cast<double*>(right_hand_side.data());
   b.xtype = CHOLMOD_REAL;
   b.dtype = CHOLMOD_DOUBLE;
-  cholmod_dense* x = cholmod_solve(CHOLMOD_A, data_->factor, &b, &data_->common);
+  cholmod_dense* x = cholmod_solve(CHOLMOD_A, data_->factor, &b, &workspace.common);
   if (x == nullptr) throw SolverError("the triangular solution failed: out of memory");
   Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(
       static_cast<const double*>(x->x), right_hand_side.rows(), right_hand_side.cols());
-  cholmod_free_dense(&x, &data_->common);
+  cholmod_free_dense(&x, &workspace.common);
   return result;
 }
 

@@ -18,7 +18,7 @@ class CholeskyFactor {
   CholeskyFactor(CholeskyFactor&&) noexcept;
   CholeskyFactor& operator=(CholeskyFactor&&) noexcept;
 
-  // One column a right-hand side.
+  // One column per right-hand side. May be called from several threads at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_side) const;
 
   double nonzeros() const;  // of the factor

@@ -27,6 +27,7 @@ __all__: list[str] = [
     "Integrator",
     "JointGroup",
     "Limits",
+    "MAX_URDF_BYTES",
     "Model",
     "ObjectiveParts",
     "QpStatus",
@@ -41,6 +42,7 @@ __all__: list[str] = [
     "centroidal_momentum",
     "centroidal_momentum_bias",
     "centroidal_momentum_matrix",
+    "check_inertia",
     "forward_dynamics",
     "frame_bias_acceleration",
     "frame_jacobian",
@@ -1341,6 +1343,17 @@ def centroidal_momentum_matrix(
     C (6, 6+n) with C nu = centroidal_momentum.
     """
 
+def check_inertia(
+    link: str,
+    mass: typing.SupportsFloat | typing.SupportsIndex,
+    inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> None:
+    """
+    Refuses a mass [kg] with an inertia (3, 3) [kg m2] about the center of mass that no body can have.
+
+    Raises: UrdfError naming the link and its principal moments.
+    """
+
 def forward_dynamics(
     model: Model,
     base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
@@ -1521,3 +1534,5 @@ def solve_box_qp(
     """
     Minimise 0.5 x'Hx + g'x with lower <= x <= upper; H (n, n) symmetric positive definite, bounds may be infinite or equal. Raises ValueError on wrong sizes, NaN, an asymmetric H or crossed bounds; everything else is a status of the result.
     """
+
+MAX_URDF_BYTES: int = 67108864

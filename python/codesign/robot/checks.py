@@ -7,9 +7,9 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 
+from codesign.dynamics import MAX_URDF_BYTES
 from codesign.errors import UrdfError
 
-MAX_BYTES = 32 * 2**20  # a URDF holds figures, not meshes
 JOINT_TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")  # what every reader accepts: no nan, inf, 1_0, 0,5
 
@@ -45,8 +45,8 @@ class _NoDoctype(ET.TreeBuilder):
 
 def parse_xml(text: str | bytes) -> ET.Element:
     """Root element `<robot>` of URDF text; comments inside it are kept. Raises: UrdfError."""
-    if len(text) > MAX_BYTES:
-        raise UrdfError(f"{len(text)} bytes are more than the {MAX_BYTES} a robot description may have")
+    if len(text) > MAX_URDF_BYTES:
+        raise UrdfError(f"{len(text)} bytes are more than the {MAX_URDF_BYTES} a robot description may have")
     parser = ET.XMLParser(target=_NoDoctype(insert_comments=True))
     try:
         root = ET.fromstring(text, parser=parser)

@@ -8,11 +8,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from codesign.dynamics import check_inertia
 from codesign.errors import UrdfError
 from codesign.transforms import Axis, Matrix, reflection
-
-# Figures in files are rounded; a plate's principal moments meet the triangle inequality with equality.
-TRIANGLE_TOLERANCE = 1e-3  # of the largest principal moment
 
 
 class MassProperties(Protocol):
@@ -63,23 +61,12 @@ class Inertial:
     def require_physical(self, name: str) -> None:
         """Refuses what no body can have. Raises: UrdfError that names the link `name`.
 
-        Checked: finite numbers, mass > 0, symmetric and positive definite inertia, and the triangle inequality: the
-        largest principal moment is at most the sum of the other two. A mass of zero with a zero tensor is a frame.
+        Checked: finite numbers, a symmetric tensor, and the rule of flights (`dynamics.check_inertia`): no negative
+        mass or principal moment, none that exceeds the sum of the other two beyond rounding, none without mass.
         """
         values = np.concatenate([[self.mass], self.com, self.inertia.ravel()])
         if not np.isfinite(values).all():
             raise UrdfError(f"link {name}: mass, centre of mass or inertia is not finite")
-        if self.mass < 0.0:
-            raise UrdfError(f"link {name}: negative mass {self.mass:g} kg")
-        if self.mass == 0.0:
-            if self.inertia.any():
-                raise UrdfError(f"link {name}: inertia without mass")
-            return
         if not np.allclose(self.inertia, self.inertia.T, rtol=1e-9, atol=0.0):
             raise UrdfError(f"link {name}: inertia tensor is not symmetric")
-        low, middle, high = np.linalg.eigvalsh(self.inertia)
-        moments = f"principal moments {low:.6g}, {middle:.6g}, {high:.6g} kg m²"
-        if not low > 0.0:
-            raise UrdfError(f"link {name}: inertia tensor is not positive definite ({moments})")
-        if low + middle < high * (1.0 - TRIANGLE_TOLERANCE):
-            raise UrdfError(f"link {name}: no body has this inertia, one moment exceeds the other two ({moments})")
+        check_inertia(name, self.mass, self.inertia)

@@ -3,13 +3,12 @@
 from collections.abc import Callable
 
 import numpy as np
+import pinocchio as pin
 import pytest
+from idyntree import bindings as idt
 
 from codesign import dynamics as dyn
 from robots import ROBOTS, Robot, State, random_state
-
-pin = pytest.importorskip("pinocchio")
-idt = pytest.importorskip("idyntree.bindings")
 
 TOLERANCE = 1e-9  # relative; double precision leaves about 1e-13, forward dynamics of light bodies 1e-11
 STATES = range(3)

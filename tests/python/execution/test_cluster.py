@@ -7,6 +7,7 @@ import threading
 import time
 from pathlib import Path
 
+import distributed
 import pytest
 
 from codesign.errors import ExecutionError
@@ -15,7 +16,6 @@ from codesign.search.optimization import optimize
 from codesign.storage.runs import Run
 from fake_study import FakeStudy, study
 
-distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("ignore")
 
 

@@ -1,3 +1,5 @@
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -80,3 +82,14 @@ def test_one_factorisation_serves_several_load_cases():
     down, side = fem.Force(TIP, [0, 0, -100.0]), fem.Force(TIP, [0, 30.0, 0])
     parts = system.solve([down]).displacement + system.solve([side]).displacement
     np.testing.assert_allclose(system.solve([down, side]).displacement, parts, atol=1e-10 * np.abs(parts).max())
+
+
+def test_one_system_can_be_solved_from_several_threads() -> None:
+    mesh = bar((12, 4, 4))
+    system = fem.StaticSystem(mesh, STEEL, [fem.Support(ROOT)])
+    loads = [fem.Force(TIP, force) for force in ([1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -3.0])]
+    alone = [system.solve([load]).displacement for load in loads]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(lambda load: system.solve([load]).displacement, loads * 4))
+    for k, displacement in enumerate(together):
+        np.testing.assert_array_equal(displacement, alone[k % len(loads)])

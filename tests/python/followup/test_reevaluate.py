@@ -38,7 +38,8 @@ def test_validates_given_designs(tmp_path) -> None:
 
 
 def test_tables_hold_every_number_exactly(tmp_path) -> None:
-    parquet = pytest.importorskip("pyarrow.parquet")
+    from pyarrow import parquet
+
     run = optimize(study(faults={"3,3,3": "raise"}), out=tmp_path / "run", cache=None, generations=2)
     with export(run, tmp_path / "rows.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

@@ -6,8 +6,6 @@ import pytest
 from codesign.followup.sensitivity import saltelli_grid, sensitivity
 from fake_study import study
 
-pytest.importorskip("SALib")
-
 
 def test_indices_of_an_additive_function_are_its_variance_shares(tmp_path) -> None:
     """near = Σ (x_i − 0.1)² / 3 with x_i uniform on its grid: no interactions, shares known exactly."""

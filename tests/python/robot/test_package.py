@@ -172,7 +172,8 @@ def test_our_core_reads_the_same_masses_and_frames(robot):
 
 
 def test_pinocchio_reads_the_same_robot(robot, parts, tmp_path):
-    pin = pytest.importorskip("pinocchio")
+    import pinocchio as pin
+
     urdf = export(robot, parts, tmp_path / "flyer", package="flyer")
     model = pin.buildModelFromUrdf(str(urdf), pin.JointModelFreeFlyer())
     data = model.createData()
@@ -194,7 +195,8 @@ def test_pinocchio_reads_the_same_robot(robot, parts, tmp_path):
 
 
 def test_idyntree_reads_the_same_robot(robot, tmp_path):
-    idyn = pytest.importorskip("idyntree.bindings")
+    from idyntree import bindings as idyn
+
     loader = idyn.ModelLoader()
     assert loader.loadModelFromString(robot.to_text())
     computations = idyn.KinDynComputations()
@@ -215,7 +217,8 @@ def test_idyntree_reads_the_same_robot(robot, tmp_path):
 
 
 def test_yourdfpy_builds_the_scene_with_the_meshes(robot, parts, tmp_path):
-    yourdfpy = pytest.importorskip("yourdfpy")
+    import yourdfpy
+
     urdf = export(robot, parts, tmp_path / "robot")
     scene = yourdfpy.URDF.load(str(urdf), mesh_dir=str(urdf.parent))
     scene.update_cfg(dict(zip(JOINTS, posture(), strict=True)))

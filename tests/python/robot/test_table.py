@@ -118,7 +118,7 @@ def test_a_table_of_a_new_robot_becomes_urdf(tmp_path):
         ("mass = 1", "mas = 1", "mas"),
         ("mass = 1\n", "", "mass, com and inertia"),
         ("xx = 1", 'xx = "1"', "Expected `float`"),
-        ("xx = 1", "xx = 9", "one moment exceeds"),
+        ("xx = 1", "xx = 9", "a principal moment exceeds"),
         ("sphere = 0.1,", "sphere = 0.1, box = [1, 1, 1],", "one of box, cylinder, sphere"),
         ('material = "grey"', 'material = "gray"', "'gray'"),
         ("axis = [0, 0, 2], ", "", "moving joints have an axis"),

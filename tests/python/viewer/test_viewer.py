@@ -17,10 +17,6 @@ from PIL import Image
 
 import synthetic_run
 from browser import open_browser, visit
-from synthetic_details import detail
-
-pytest.importorskip("viser", reason="viser is not installed (extra: view)")
-
 from codesign.chain.study import load_study
 from codesign.errors import CodesignError
 from codesign.report.details import FOLDER, save_detail
@@ -30,6 +26,7 @@ from codesign.report.scene import robot_scene
 from codesign.viewer import viewer as viewing
 from codesign.viewer.actor import quaternions, tinted_mesh
 from codesign.viewer.panel import joint_angles, legend
+from synthetic_details import detail
 
 STUDY = synthetic_run.Study()
 
