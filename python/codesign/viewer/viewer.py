@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from codesign.errors import CodesignError
+from codesign.errors import CodesignError, ExecutionError
 from codesign.files import write_text
 from codesign.report.compute import compute_detail
 from codesign.report.details import Detail, detail_key, save_detail
@@ -88,8 +88,10 @@ class Viewer:
         port: int,
         packages: tuple[Path, ...] | None,
     ) -> None:
-        import viser
-
+        try:
+            import viser
+        except ImportError as error:
+            raise ExecutionError("the viewer needs the package viser: pip install 'codesign[view]'") from error
         self._study, self._choices, self._details, self._folder = study, choices, dict(details), folder
         self._trajectory = trajectory
         self._packages = package_paths() if packages is None else packages
