@@ -152,8 +152,8 @@ class CommandSpeedsConfig(Section, frozen=True, kw_only=True):
 
     forward_m_s: Positive
     vertical_m_s: Positive
-    lateral_m_s: Positive = 0.3125
-    roll_deg_s: Positive = 18.75
+    lateral_m_s: Positive
+    roll_deg_s: Positive
     pitch_deg_s: Positive
     yaw_deg_s: Positive
 

@@ -123,7 +123,6 @@ def complete(raw: dict[str, Any]) -> None:
         "symmetric_pairs": [["front_jet", "rear_jet"]], "min_thrust_n": 5.0, "axes": 4 * [[0.0, 0.0, -1.0]],
         "reaction_n_m_per_n": 0.01, "lag_s": [0.05, 0.05, 0.06, 0.06],
     }  # fmt: skip
-    raw["flight"]["command_speeds"] |= {"lateral_m_s": 0.3, "roll_deg_s": 18.75}
     raw["flight"]["ground"]["height_m"] = 0.0
     raw["objectives"]["maximise"] = ["parts.strut.safety_factor"]
     raw["constraints"] |= {
