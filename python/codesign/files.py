@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,8 +18,9 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     path = Path(path)
     if not path.parent.is_dir():
-        raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}.tmp{path.suffix}")
+        raise FileNotFoundError(errno.ENOENT, f"there is no folder {path.parent}", str(path))
+    temporary = path.with_name(f".{path.stem}.{threading.get_native_id()}.tmp{path.suffix}")  # no two threads share it
+    temporary.unlink(missing_ok=True)  # of a writer that was killed
     try:
         yield temporary
         temporary.replace(path)

@@ -13,6 +13,7 @@ from codesign import fem
 from codesign._core import fem as _core
 from codesign.cli.stress_places import CaughtPlace
 from codesign.fem.model import resolve
+from codesign.files import replacing
 from codesign.report.compute import stress_field
 from codesign.report.figures import style
 from codesign.report.figures.solids import PART_VIEW, on_screen, show_picture, stress_bar, stress_tint
@@ -47,7 +48,8 @@ def write_stress_picture(
         axes.plot([], [], "-", color=ARROW, label="load")
         axes.legend(loc="lower left", fontsize=6, frameon=False)
         stress_bar(figure, axes, result.peak_stress)
-        figure.savefig(path, format="png", metadata={"Software": None})
+        with replacing(path) as beside:
+            figure.savefig(beside, format="png", metadata={"Software": None})
     return path
 
 

@@ -6,7 +6,6 @@ One compressed file a design, beside the run: `details/<values>.npz`.
 from __future__ import annotations
 
 import json
-import os
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from codesign.files import replacing
 from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
 
@@ -87,13 +87,8 @@ def save_detail(folder: Path, detail: Detail) -> Path:
             "trajectory": flight.trajectory, "jets": flight.jets, "groups": flight.groups, "joints": flight.joints,
         }  # fmt: skip
         arrays |= {f"flight {name}": values.astype(np.float32) for name, values in flight.arrays.items()}
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with beside.open("wb") as file:
-            np.savez_compressed(file, head=np.frombuffer(json.dumps(head).encode(), dtype=np.uint8), **arrays)
-        beside.rename(path)
-    finally:
-        beside.unlink(missing_ok=True)
+    with replacing(path) as beside:
+        np.savez_compressed(beside, head=np.frombuffer(json.dumps(head).encode(), dtype=np.uint8), **arrays)
     return path
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import logging
-import os
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from codesign.errors import CodesignError, StoreError
+from codesign.files import write_text
 from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
@@ -136,12 +136,7 @@ def _shown(run: ReportData, details: dict[str, Detail]) -> dict[str, Detail]:
 
 
 def _write(path: Path, text: str) -> Path:
-    """Writes a file completely or not at all."""
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        beside.write_text(text, encoding="utf-8")
-        beside.rename(path)
+        return write_text(path, text)
     except OSError as error:
-        beside.unlink(missing_ok=True)
-        raise StoreError(f"{path}: cannot be written: {error.strerror}") from error
-    return path
+        raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from error

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from codesign.errors import StoreError
+from codesign.files import replacing
 from codesign.problem.evaluation import Evaluation
 
 DATABASE = "run.sqlite"
@@ -128,18 +129,10 @@ class RunStore:
             path = out / DATABASE
             if path.exists():
                 raise StoreError(f"{out} holds a run already: continue it with resume, or choose another folder")
-            beside = out / f".{DATABASE}.{os.getpid()}"
-            beside.unlink(missing_ok=True)
-            with _guard(path), contextlib.closing(sqlite3.connect(beside, isolation_level=None)) as connection:
-                stamp = f"PRAGMA application_id = {APPLICATION_ID}; PRAGMA user_version = {VERSION};"
-                connection.executescript(f"BEGIN; {SCHEMA} {stamp} COMMIT;")
-                rows = [(key, json.dumps(value, allow_nan=False)) for key, value in meta.items()]
-                connection.executemany("INSERT INTO meta (key, value) VALUES (?, ?)", rows)
-            beside.rename(path)
+            with _guard(path), replacing(path) as beside:
+                _write_new(beside, meta)
         except BaseException as error:
             lock.close()
-            with contextlib.suppress(OSError, UnboundLocalError):
-                beside.unlink(missing_ok=True)
             if isinstance(error, OSError):
                 raise StoreError(f"{out}: cannot be written: {error.strerror}") from error
             raise
@@ -388,6 +381,15 @@ def _lock(out: Path) -> IO[bytes]:
         lock.truncate(0)
         lock.write(f"process {os.getpid()} on {socket.gethostname()} since {now()}\n".encode())
     return lock
+
+
+def _write_new(path: Path, meta: Mapping[str, Any]) -> None:
+    """The database of a run without rows."""
+    with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as connection:
+        stamp = f"PRAGMA application_id = {APPLICATION_ID}; PRAGMA user_version = {VERSION};"
+        connection.executescript(f"BEGIN; {SCHEMA} {stamp} COMMIT;")
+        rows = [(key, json.dumps(value, allow_nan=False)) for key, value in meta.items()]
+        connection.executemany("INSERT INTO meta (key, value) VALUES (?, ?)", rows)
 
 
 @contextlib.contextmanager

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from codesign.errors import StoreError
+from codesign.files import replacing
 from codesign.storage.runs import Run
 from codesign.storage.store import Record
 
@@ -33,14 +33,11 @@ def export(run: Run, path: str | Path) -> Path:
     writers: dict[str, Callable[[list[dict[str, Any]], Path], None]] = {".csv": _write_csv, ".parquet": _write_parquet}
     if path.suffix not in writers:
         raise StoreError(f"{path}: a table is written as .csv or .parquet")
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        writers[path.suffix](table(run), beside)
-        beside.replace(path)
+        with replacing(path) as beside:
+            writers[path.suffix](table(run), beside)
     except OSError as error:
         raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from error
-    finally:
-        beside.unlink(missing_ok=True)
     return path
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from codesign.errors import CodesignError
+from codesign.files import replacing
 from codesign.report.figures import designs, flights, fronts, robustness, search, solids, style
 from codesign.report.figures.data import FigureData
 
@@ -94,10 +95,6 @@ def _draw(number: int) -> tuple[list[Path], str | None]:
 
 
 def _save(figure: Any, path: Path) -> Path:
-    beside = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
+    with replacing(path) as beside:
         figure.savefig(beside, metadata={"CreationDate": None} if path.suffix == ".pdf" else {"Software": None})
-        beside.rename(path)
-    finally:
-        beside.unlink(missing_ok=True)
     return path
