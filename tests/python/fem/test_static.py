@@ -93,3 +93,16 @@ def test_one_system_can_be_solved_from_several_threads() -> None:
         together = list(pool.map(lambda load: system.solve([load]).displacement, loads * 4))
     for k, displacement in enumerate(together):
         np.testing.assert_array_equal(displacement, alone[k % len(loads)])
+
+
+def test_a_peak_at_a_point_force_is_not_resolved():
+    """The stress there grows with every refinement; over the face it is told within a few per cent."""
+    mesh = box_mesh((4, 4, 4))
+    root = fem.Support(fem.faces_with_normal([-1, 0, 0]))
+    top = int(np.argmin(np.linalg.norm(mesh.nodes - [1.0, 0.5, 1.0], axis=1)))
+    point = fem.solve_static(mesh, STEEL, [root], [fem.Force(fem.select_nodes([top]), [0, 0, -1e3])])
+    assert point.stress_error > 0.5 * point.peak_stress
+    assert not point.peak_resolved
+    spread = fem.solve_static(mesh, STEEL, [root], [fem.Force(fem.faces_with_normal([1, 0, 0]), [1e3, 0, 0])])
+    assert spread.peak_resolved
+    assert spread.stress_50 <= spread.peak_stress
