@@ -25,6 +25,7 @@ from codesign.cli.console import (
     print_json,
     print_run,
     print_stress,
+    print_study,
     shown,
 )
 from codesign.errors import CodesignError, DesignError, LibraryError, StudyError
@@ -284,6 +285,28 @@ def new(folder: Annotated[Path, typer.Argument(help="New folder for the study.")
     for path in new_study(folder):
         out.print(str(path), soft_wrap=True, highlight=False)
     return 0
+
+
+@app.command(epilog="Example: `codesign check my_study`")
+def check(
+    study: Annotated[str, typer.Argument(help="A shipped study's name or the path of a study.toml.")] = DEFAULT_STUDY,
+    as_json: JsonOption = False,
+) -> int:
+    """Everything that is wrong with a study, at once; else what varies, what is minimized and what must hold."""
+    from codesign.chain.judge import limits
+    from codesign.chain.study import load_study
+    from codesign.study.loading import find_problems
+
+    problems = find_problems(study)
+    if as_json:
+        print_json({"problems": problems})
+    elif problems:
+        for problem in problems:
+            out.print(problem, soft_wrap=True)
+    else:
+        loaded = load_study(study)
+        print_study(loaded.space, loaded.objectives, [limit.quantity.title for limit in limits(loaded.config)])
+    return 1 if problems else 0
 
 
 @app.command(epilog="Example: `codesign validate runs/a --designs recommended --designs best`")

@@ -16,6 +16,7 @@ from codesign.errors import StudyError
 from codesign.names import closest, nearest
 from codesign.study.config import DECIDING_SECTIONS, RawStudy, StudyConfig
 
+MOST_PROBLEMS = 50  # that are told at once
 LARGEST_NUMBER = 1e100  # beyond it squares overflow; NaN is refused by the same comparison
 FIXED_TABLES = ("variables", "objectives")  # what a variable may not set although results depend on it
 UNKNOWN_KEY = re.compile(r"Object contains unknown field `(.*)`")
@@ -32,6 +33,28 @@ def convert(raw: RawStudy, path: Path) -> StudyConfig:
         return msgspec.convert(raw, StudyConfig)
     except msgspec.ValidationError as error:
         raise StudyError(f"{path}: {_explained(raw, error)}") from error
+
+
+def type_problems(raw: RawStudy) -> list[str]:
+    """All keys that are unknown, missing or of a wrong type: what is refused is left out and the rest read again."""
+    raw, found, removed = copy.deepcopy(raw), list[str](), set[str]()
+    for _ in range(MOST_PROBLEMS):
+        try:
+            msgspec.convert(raw, StudyConfig)
+        except msgspec.ValidationError as error:
+            reason, _, location = str(error).partition(" - at `$")
+            steps = _steps(raw, location.rstrip("`"), str(error))
+            unknown, missing = UNKNOWN_KEY.fullmatch(reason), MISSING_KEY.fullmatch(reason)
+            if missing is None or _written([*steps, missing[1]]) not in removed:
+                found.append(_explained(raw, error))
+            if missing is not None and not steps:
+                break  # of the whole file, which is read last
+            *above, last = [*steps, unknown[1]] if unknown else steps
+            removed.add(_written([*above, last]))
+            del _at(raw, above)[last]
+        else:
+            break
+    return found
 
 
 def numbers(node: Any, place: str = "") -> Iterator[tuple[str, float]]:

@@ -6,7 +6,7 @@ import functools
 import hashlib
 import importlib
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
 from types import FunctionType, ModuleType
@@ -19,7 +19,7 @@ from codesign.problem.design_space import DesignSpace, Variable
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, reference_problems
 from codesign.study.config import PartConfig, RawStudy, StudyConfig
-from codesign.study.conversion import convert
+from codesign.study.conversion import convert, type_problems
 from codesign.study.fingerprint import study_identity
 from codesign.study.flight_checks import flight_problems, robot_problems
 from codesign.study.imports import PACKAGE
@@ -61,6 +61,13 @@ def study_from(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
         source: what workers load it from; by default its path.
     Raises: StudyError with file, key, value and reason.
     """
+    study = _unchecked(raw, path, kind, source)
+    _refuse(path, _design_problems(study))
+    return study
+
+
+def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source: str) -> StudyData:
+    """A study whose file is right in itself."""
     config = convert(raw, path)
     part_classes = {part.name: _part_class(part, path) for part in config.parts}
     functions = {name: _function(name, path) for name in own_functions(config)}
@@ -71,7 +78,7 @@ def study_from(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
         raise StudyError(f"{path}: robot.urdf: {error}") from error
     modules = {cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()}
     space = DesignSpace(tuple(Variable(n, v.minimum, v.maximum, v.step, v.unit) for n, v in config.variables.items()))
-    study = kind(
+    return kind(
         source=source if source in shipped_studies() else str(path),
         path=path,
         raw=raw,
@@ -82,8 +89,6 @@ def study_from(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
         base_robot=robot,
         identity=study_identity(raw, path, modules),
     )
-    _check_designs(study)
-    return study
 
 
 def _parse(path: Path) -> RawStudy:
@@ -113,21 +118,42 @@ def _refuse(path: Path, problems: Iterable[Problem]) -> None:
         raise StudyError(f"{path}: {key}: {reason}")
 
 
-def _check_designs(study: StudyData) -> None:
+def _design_problems(study: StudyData) -> Iterator[Problem]:
     """What designs of the grid show: values that variables set, the baseline, the parts' options, faces and places."""
-    space, path = study.space, study.path
+    space = study.space
     second, last, middle = [1] * len(space.levels), [n - 1 for n in space.levels], [n // 2 for n in space.levels]
     for corner in ([0] * len(space.levels), second, last):
         configured = study.configured(space.from_indices(corner))
-        _refuse(path, chain(reference_problems(configured, study.part_classes), flight_problems(configured)))
-    try:
-        baseline = study.baseline
-    except DesignError as error:
-        raise StudyError(f"{path}: baseline: {error}") from error
+        yield from chain(reference_problems(configured, study.part_classes), flight_problems(configured))
     designs = [space.from_indices(indices) for indices in (middle, [0] * len(middle), last)]
-    designs = designs if baseline is None else [baseline, *designs]
-    _refuse(path, robot_problems(study.config, study.base_robot))
-    _refuse(path, built_problems(study.config, study.part_classes, study.base_robot, designs))
+    try:
+        designs = designs if study.baseline is None else [study.baseline, *designs]
+    except DesignError as error:
+        yield "baseline", str(error)
+    yield from robot_problems(study.config, study.base_robot)
+    yield from built_problems(study.config, study.part_classes, study.base_robot, designs)
+
+
+def find_problems(source: str | Path) -> list[str]:
+    """Everything that is wrong with a study, a line each; empty if it can be loaded.
+
+    Names are judged once all keys have the right types, the robot and the parts once all names of the file are right.
+    """
+    path = _locate(source)
+    try:
+        raw = _parse(path)
+        if found := type_problems(raw):
+            return [f"{path}: {problem}" for problem in found]
+        config = convert(raw, path)
+        part_classes = {part.name: _part_class(part, path) for part in config.parts}
+        found = _lines(path, chain(reference_problems(config, part_classes), flight_problems(config)))
+        return found or _lines(path, _design_problems(_unchecked(raw, path, StudyData, "")))
+    except StudyError as error:
+        return [str(error)]
+
+
+def _lines(path: Path, problems: Iterable[Problem]) -> list[str]:
+    return list(dict.fromkeys(f"{path}: {key}: {reason}" for key, reason in problems))
 
 
 def _locate(source: str | Path) -> Path:

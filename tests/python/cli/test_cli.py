@@ -7,7 +7,8 @@ import sys
 import pytest
 
 COMMANDS = (
-    "evaluate", "fly", "optimize", "resume", "runs", "report", "validate", "view", "export", "stress", "new", "doctor",
+    "evaluate", "fly", "optimize", "resume", "runs", "report", "validate", "view", "export", "stress", "new",
+    "check", "doctor",
 )  # fmt: skip
 ORIGINAL = ("--set", "angle=15", "--set", "distance=42", "--set", "offset=80", "--set", "length=108")
 

@@ -112,3 +112,22 @@ def test_an_edited_study_is_loaded_anew(tmp_path):
     robot = first.path.parent / "robot.urdf"
     robot.write_text(robot.read_text().replace("</robot>", "<!-- edited --></robot>"))
     assert load_study(first.path).hash != second.hash
+
+
+def test_check_tells_all_problems_at_once_or_what_varies(tmp_path, capsys):
+    file = edited(tmp_path / "study").path
+    assert main.check(str(file)) == 0
+    told = capsys.readouterr().out
+    assert "reach" in told and "120 … 320 by 10 mm" in told and "294 designs" in told and "momentum" in told
+    sound = file.read_text()
+    file.write_text(
+        sound.replace("population = 16", "poulation = 16").replace("max_thrust_n = 250.0", 'max_thrust_n = "a"')
+    )
+    assert main.check(str(file)) == 1
+    told = capsys.readouterr().out
+    assert "unknown key 'poulation'; did you mean 'population'?" in told and "flight.jets.max_thrust_n: 'a'" in told
+    assert len(told.splitlines()) == 2
+    file.write_text(sound.replace('"mount"]', '"mont"]').replace('"skid_front"', '"skid_frond"'))
+    assert main.check(str(file)) == 1
+    told = capsys.readouterr().out
+    assert "did you mean 'mount'" in told and "did you mean 'skid_front'" in told

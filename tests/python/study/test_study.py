@@ -122,7 +122,7 @@ def test_hash_follows_what_decides_results(copy, tmp_path):
     first = load_study(tmp_path / "study").hash
     assert copy("population = 16", "population = 17").hash == first
     assert copy("title = ", "# \ntitle = ").hash == first
-    assert copy("exclusion_distance_mm = 3.0", "exclusion_distance_mm = 4.0").hash != first
+    assert copy("tolerance = 0.05", "tolerance = 0.04").hash != first
 
 
 def test_hash_follows_the_part_source(copy, tmp_path):
