@@ -7,6 +7,7 @@
 #                                                 if any differs (times, hashes and provenance apart)
 #
 # REV is built in build/revisions/COMMIT, with ccache if it is there. PYTHON: the environment to compare (.venv/bin/python).
+# Leave the sources alone while it runs: workers that load another program than the run are refused.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 kind=times
