@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 import os
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -12,7 +11,6 @@ from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
-import numpy.typing as npt
 
 from codesign import __version__
 from codesign.files import write_bytes
@@ -21,6 +19,7 @@ from codesign.geometry.profile import Vector
 from codesign.geometry.solid import Solid
 from codesign.units import MILLIMETRE
 
+_Y_UP, _Z_UP = "y up", "z up"  # frames of a GLB scene
 _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -94,49 +93,26 @@ def write_glb(
     """Binary glTF 2.0 in metres: meshes by name, placed by nodes (name, mesh name, root_T_node (4, 4) [m]).
 
     glTF has y up: a root node turns our z there. Without normals in the file, viewers shade every triangle flat.
+    Raises: ValueError if two nodes have one name.
     """
-    buffers: list[bytes] = []
-    views: list[dict[str, object]] = []
-    accessors: list[dict[str, object]] = []
+    from trimesh import Scene, Trimesh
+    from trimesh.visual import TextureVisuals
+    from trimesh.visual.material import PBRMaterial
 
-    def add(array: npt.NDArray[Any], target: int, accessor: dict[str, object]) -> int:
-        offset = sum(len(buffer) for buffer in buffers)
-        views.append({"buffer": 0, "byteOffset": offset, "byteLength": array.nbytes, "target": target})
-        buffers.append(array.tobytes())  # multiples of four bytes, as the format wants
-        accessors.append({"bufferView": len(views) - 1, **accessor})
-        return len(accessors) - 1
-
-    gltf_meshes = []
+    names = [name for name, _, _ in nodes]
+    if repeated := {name for name in names if names.count(name) > 1}:
+        raise ValueError(f"nodes of a GLB file with the same name: {', '.join(sorted(repeated))}")
+    metal = PBRMaterial(name="metal", baseColorFactor=[191, 194, 199, 255], metallicFactor=0.6, roughnessFactor=0.5)
+    scene = Scene(base_frame=_Y_UP)
+    scene.graph.update(_Z_UP, _Y_UP, matrix=[[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
     for name, solid in meshes.items():
-        points = (solid.points * MILLIMETRE).astype("<f4")
-        bounds = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
-        position = add(points, 34962, {"componentType": 5126, "count": len(points), "type": "VEC3", **bounds})
-        indices = solid.triangles.astype("<u4")
-        index = add(indices, 34963, {"componentType": 5125, "count": indices.size, "type": "SCALAR"})
-        primitive = {"attributes": {"POSITION": position}, "indices": index, "material": 0}
-        gltf_meshes.append({"name": name, "primitives": [primitive]})
-    order = list(meshes)
-    placed = [
-        {"name": name, "mesh": order.index(mesh), "matrix": np.asarray(pose, dtype=float).T.ravel().tolist()}
-        for name, mesh, pose in nodes
-    ]
-    metal = {"baseColorFactor": [0.75, 0.76, 0.78, 1.0], "metallicFactor": 0.6, "roughnessFactor": 0.5}
-    z_to_y = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
-    document = {
-        "asset": {"version": "2.0", "generator": "codesign"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"name": "root", "rotation": z_to_y, "children": list(range(1, len(placed) + 1))}, *placed],
-        "meshes": gltf_meshes,
-        "materials": [{"name": "metal", "pbrMetallicRoughness": metal}],
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": sum(len(buffer) for buffer in buffers)}],
-    }
-    text = json.dumps(document, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
-    binary = b"".join(buffers)
-    chunks = [len(text).to_bytes(4, "little"), b"JSON", text, len(binary).to_bytes(4, "little"), b"BIN\0", binary]
-    body = b"".join(chunks)
-    header = b"glTF" + (2).to_bytes(4, "little") + (12 + len(body)).to_bytes(4, "little")
-    write_bytes(Path(path), header + body)
+        visual = TextureVisuals(material=metal)
+        scene.geometry[name] = Trimesh(solid.points * MILLIMETRE, solid.triangles, process=False, visual=visual)
+    for name, mesh, pose in nodes:
+        scene.graph.update(name, _Z_UP, matrix=pose, geometry=mesh)
+    content = scene.export(file_type="glb", include_normals=False, tree_postprocessor=_signed)
+    write_bytes(Path(path), content)
+
+
+def _signed(gltf: dict[str, Any]) -> None:
+    gltf["asset"]["generator"] = f"codesign {__version__}"

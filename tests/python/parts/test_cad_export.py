@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 import trimesh
 
+import codesign
+from codesign.geometry.mesh_files import write_glb
 from codesign.geometry.plate import lay_out
 from codesign.parts.cad_export import export_parts
 from codesign.parts.component import Component
+from codesign.parts.part import EXPORT_RESOLUTION
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -71,7 +74,30 @@ def test_glb_places_all_components_in_metres_with_y_up(folder: Path) -> None:
     assert volume == pytest.approx(BRACKET.mass_properties().volume, rel=1e-3)
     data = (folder / "assembly.glb").read_bytes()
     assert int.from_bytes(data[8:12], "little") == len(data)
-    assert json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])["asset"]["version"] == "2.0"
+    gltf = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+    assert gltf["asset"] == {"version": "2.0", "generator": f"codesign {codesign.__version__}"}
+    assert [node["name"] for node in gltf["nodes"]] == ["z up", "l_bracket", "r_bracket", "l_forearm", "r_forearm"]
+    assert [mesh["name"] for mesh in gltf["meshes"]] == list(scene.geometry)  # two brackets share one
+    (material,) = gltf["materials"]
+    assert material["name"] == "metal"
+    assert all(
+        p["material"] == 0 and set(p["attributes"]) == {"POSITION"} for m in gltf["meshes"] for p in m["primitives"]
+    )
+
+
+def test_glb_holds_the_points_and_triangles_of_its_solids(folder: Path) -> None:
+    solid = BRACKET.solid(EXPORT_RESOLUTION)
+    scene = trimesh.load(folder / "assembly.glb", process=False, merge_primitives=False)
+    read = scene.geometry["jetpack_bracket"]
+    np.testing.assert_array_equal(read.faces, solid.triangles)
+    np.testing.assert_array_equal(read.vertices, (solid.points * 1e-3).astype(np.float32))
+
+
+def test_two_nodes_of_one_name_are_refused(tmp_path: Path) -> None:
+    solid = BRACKET.solid(EXPORT_RESOLUTION)
+    with pytest.raises(ValueError, match="same name: left"):
+        write_glb({"a": solid}, [("left", "a", np.eye(4))] * 2, tmp_path / "a.glb")
+    assert not list(tmp_path.iterdir())
 
 
 def read_3mf(path: Path) -> list[tuple[str, np.ndarray, np.ndarray]]:
