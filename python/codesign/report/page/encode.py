@@ -56,7 +56,7 @@ def _flight(flight: FlightHistory) -> dict[str, Any]:
 
     groups = [group.replace("_", " ") for group in flight.groups]
     charts = [
-        chart("Position error", "cm", 100.0 * flight["com_error"], ["centre of mass"]),
+        chart("Position error", "cm", 100.0 * flight["com_error"], ["center of mass"]),
         chart("Attitude error", "°", flight["attitude_error"] / DEGREE, ["base"]),
         chart("Jet thrusts", "N", flight["thrust"], short_names(flight.jets), zero=False),
     ]

@@ -75,7 +75,7 @@ def _trade_offs(run: ReportData) -> Block:
         f'<ul class="key">{key}</ul><p class="count"><span id="front-outside"></span> '
         f'<button type="button" class="link" data-save="front">Save as PNG</button></p></div>{CARD}</div>{ANNOUNCEMENT}'
     )
-    third = " Colour is the remaining objective." if len(run.objectives) > 2 else ""
+    third = " Color is the remaining objective." if len(run.objectives) > 2 else ""
     text = f"Lower is better on both axes.{third} Click a design to see it; drag to zoom, double-click to zoom back."
     return _block("trade-offs", "Trade-offs", "Trade-offs", text, body, controls)
 
@@ -88,8 +88,8 @@ def _parts_and_flight() -> Block:
     )
     title = 'Parts of <span id="parts-name"></span>'
     text = (
-        "Colours end at the peak stress, from which the safety factor is made; stress right beside clamps, which no "
-        "mesh settles, may be higher. Of a part with a plane of symmetry one half was analysed. Drag to turn."
+        "Colors end at the peak stress, from which the safety factor is made; stress right beside clamps, which no "
+        "mesh settles, may be higher. Of a part with a plane of symmetry one half was analyzed. Drag to turn."
     )
     return _block("parts-and-flight", "Parts and flight", title, text, body)
 
@@ -165,7 +165,7 @@ def _provenance(run: ReportData) -> Block:
     meanings = {objective.title: objective.meaning for objective in run.objectives}
     facts = {spelled(key): value for key, value in run.provenance.items()}
     body = (
-        f'<div class="columns"><div><h3>What is minimised</h3><dl class="pairs">{pairs(meanings)}</dl></div>'
+        f'<div class="columns"><div><h3>What is minimized</h3><dl class="pairs">{pairs(meanings)}</dl></div>'
         f'<div><h3>Where the numbers come from</h3><dl class="pairs">{pairs(facts)}</dl></div></div>'
     )
     return _block("provenance", "Provenance", "Definitions and provenance", "", body)

@@ -1,4 +1,4 @@
-"""The page's first screen: what was optimised, what was gained, which design to build and why."""
+"""The page's first screen: what was optimized, what was gained, which design to build and why."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from codesign.report.validation import Validation
 
 
 def summary(run: ReportData, picture: bytes | None = None, validation: Validation | None = None) -> str:
-    """HTML of the first screen; picture: PNG of the robot with the parts that were optimised."""
+    """HTML of the first screen; picture: PNG of the robot with the parts that were optimized."""
     leads = [run.description, words.searched(run), words.gained(run)]
     said = f"<h1>{escape(run.title)}</h1>" + "".join(f'<p class="lead">{escape(text)}</p>' for text in leads if text)
     notes = "".join(f'<p class="notice">{escape(note)}</p>' for note in words.caveats(run))
@@ -21,8 +21,8 @@ def summary(run: ReportData, picture: bytes | None = None, validation: Validatio
     if picture is not None:
         source = base64.b64encode(picture).decode()
         shown = (
-            f'<figure><img src="data:image/png;base64,{source}" alt="The robot, the optimised parts in blue">'
-            "<figcaption>In blue: the parts that were optimised</figcaption></figure>"
+            f'<figure><img src="data:image/png;base64,{source}" alt="The robot, the optimized parts in blue">'
+            "<figcaption>In blue: the parts that were optimized</figcaption></figure>"
         )
     return (
         f'<section class="summary" aria-label="Summary"><div class="opening"><div>{said}{notes}</div>{shown}</div>'
