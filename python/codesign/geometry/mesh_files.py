@@ -102,11 +102,12 @@ def write_glb(
     names = [name for name, _, _ in nodes]
     if repeated := {name for name in names if names.count(name) > 1}:
         raise ValueError(f"nodes of a GLB file with the same name: {', '.join(sorted(repeated))}")
-    metal = PBRMaterial(name="metal", baseColorFactor=[191, 194, 199, 255], metallicFactor=0.6, roughnessFactor=0.5)
-    scene = Scene(base_frame=_Y_UP)
+    color = [191, 194, 199, 255]
+    metal = PBRMaterial("metal", baseColorFactor=color, metallicFactor=0.6, roughnessFactor=0.5)  # type: ignore[no-untyped-call]
+    scene: Any = Scene(base_frame=_Y_UP)
     scene.graph.update(_Z_UP, _Y_UP, matrix=[[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
     for name, solid in meshes.items():
-        visual = TextureVisuals(material=metal)
+        visual = TextureVisuals(material=metal)  # type: ignore[no-untyped-call]
         scene.geometry[name] = Trimesh(solid.points * MILLIMETRE, solid.triangles, process=False, visual=visual)
     for name, mesh, pose in nodes:
         scene.graph.update(name, _Z_UP, matrix=pose, geometry=mesh)

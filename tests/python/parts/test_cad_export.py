@@ -76,7 +76,8 @@ def test_glb_places_all_components_in_metres_with_y_up(folder: Path) -> None:
     assert int.from_bytes(data[8:12], "little") == len(data)
     gltf = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
     assert gltf["asset"] == {"version": "2.0", "generator": f"codesign {codesign.__version__}"}
-    assert [node["name"] for node in gltf["nodes"]] == ["z up", "l_bracket", "r_bracket", "l_forearm", "r_forearm"]
+    names = [node["name"] for node in gltf["nodes"] if node["name"] != "y up"]  # which some versions of trimesh write
+    assert names == ["z up", "l_bracket", "r_bracket", "l_forearm", "r_forearm"]
     assert [mesh["name"] for mesh in gltf["meshes"]] == list(scene.geometry)  # two brackets share one
     (material,) = gltf["materials"]
     assert material["name"] == "metal"
