@@ -7,7 +7,7 @@ import pytest
 
 import codesign
 from codesign.cli import doctor
-from codesign.cli.main import doctor as doctor_command
+from codesign.cli.commands.doctor import doctor as doctor_command
 from codesign.cli.main import main
 from codesign.errors import LibraryError
 from codesign.parts import write_step

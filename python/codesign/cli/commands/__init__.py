@@ -1,0 +1,1 @@
+"""The commands, one module per group: parse, call, print; each returns the exit code."""

@@ -1,0 +1,135 @@
+"""Commands about one design: evaluate, fly, export, view."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.table import Table
+
+from codesign.cli.console import out, print_confirmations, print_evaluation, print_json, shown
+from codesign.cli.options import (
+    DEFAULT_STUDY,
+    EXAMPLE_DESIGN,
+    JsonOption,
+    SetOption,
+    StudyOption,
+    TrajectoryOption,
+    parse_design,
+)
+from codesign.errors import DesignError
+
+commands = typer.Typer()
+
+
+@commands.command(epilog=f"Example: `codesign evaluate {EXAMPLE_DESIGN}`")
+def evaluate(
+    set_: SetOption,
+    study: StudyOption = DEFAULT_STUDY,
+    trajectory: TrajectoryOption = None,
+    confirm: Annotated[bool, typer.Option("--confirm", help="Full parts on fine meshes too (some seconds).")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """One design through the whole chain: parts, stress, robot, flight, objectives."""
+    from codesign.chain.study import load_study
+
+    loaded = load_study(study)
+    evaluation = loaded.evaluate(parse_design(set_), trajectory=trajectory)
+    confirmations = loaded.confirm(evaluation.design) if confirm and evaluation.status != "failed" else {}
+    if as_json:
+        confirmed = {"confirmed": {name: c.confirmed for name, c in confirmations.items()}} if confirm else {}
+        print_json(evaluation.to_dict() | confirmed)
+    else:
+        print_evaluation(evaluation)
+        print_confirmations(confirmations)
+    return 0 if evaluation.status == "feasible" else 1
+
+
+@commands.command(epilog="Example: `codesign fly robot.urdf --trajectory envelope --json`")
+def fly(
+    robot: Annotated[Path, typer.Argument(help="URDF with the study's joints and jets.")],
+    study: StudyOption = DEFAULT_STUDY,
+    trajectory: TrajectoryOption = None,
+    jets: Annotated[str | None, typer.Option(help="Jet model: integrator or turbine.")] = None,
+    as_published: Annotated[bool, typer.Option(help="Accept links with non-physical inertia.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Flies any URDF that has the study's joints and jets."""
+    from codesign.chain.fly import fly_robot
+    from codesign.chain.study import load_study
+
+    result = fly_robot(load_study(study), robot, trajectory=trajectory, jets=jets, as_published=as_published)
+    if as_json:
+        print_json(result)
+    else:
+        table = Table(show_header=False, box=None, pad_edge=False)
+        table.add_row("status", result["status"] + (f": {result['reason']}" if result["reason"] else ""))
+        for family, values in result["objective_families"].items():
+            for key, value in values.items():
+                table.add_row(f"{family} {key}", f"{value:.8g}")
+        for key, value in result["flight"].items():
+            table.add_row(key, shown(value))
+        out.print(table)
+    return 0 if result["status"] == "completed" else 1
+
+
+@commands.command(epilog="Example: `codesign export --run runs/a --design recommended --out order`")
+def export(
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the files; created.")],
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.")
+    ] = None,
+    run_dir: Annotated[Path | None, typer.Option("--run", metavar="DIR", help="A design of this run instead.")] = None,
+    selector: Annotated[str, typer.Option("--design", help="Of the run: recommended or a number.")] = "recommended",
+    study: StudyOption = DEFAULT_STUDY,
+    organization: Annotated[str, typer.Option(help="For the files' headers; default: the study's title.")] = "",
+    force: Annotated[bool, typer.Option("--force", help="Replace the export of another design.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """What it takes to make and simulate a design: STL, STEP, 3MF, bill of materials, URDF with meshes, VTU, JSON."""
+    from codesign.chain.study import load_study
+    from codesign.cli.design import design_of_run, export_design
+
+    if (run_dir is None) == (not set_):
+        raise DesignError("export needs either a design by --set or a run by --run")
+    if run_dir is None:
+        loaded, design, chosen = load_study(study), parse_design(set_ or []), ""
+    else:
+        loaded, design, chosen = design_of_run(run_dir, selector)
+    written = export_design(loaded, design, out_dir, chosen=chosen, organization=organization, force=force)
+    if as_json:
+        print_json({"files": [str(path) for path in written]})
+    else:
+        for path in written:
+            out.print(str(path), soft_wrap=True, highlight=False)
+    return 0
+
+
+@commands.command(epilog="Example: `codesign view runs/a`")
+def view(
+    run_dir: Annotated[Path | None, typer.Argument(metavar="[DIR]", help="Folder of a run.")] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A design instead.")] = None,
+    study: StudyOption = DEFAULT_STUDY,
+    trajectory: TrajectoryOption = None,
+    port: Annotated[int, typer.Option(help="Local port of the page.")] = 8080,
+    record: Annotated[
+        Path | None, typer.Option(metavar="FILE.html", help="Write the flight as a page that needs no server instead.")
+    ] = None,
+) -> int:
+    """3-D viewer in the browser: robot, parts colored by stress, flight playback. Ctrl-C ends it."""
+    from codesign.chain.study import load_study
+    from codesign.viewer import viewer
+
+    if (run_dir is None) == (not set_):
+        raise DesignError("view needs either the folder of a run or a design by --set")
+    design = parse_design(set_) if set_ else None
+    shown = load_study(study) if design else None
+    if record is not None:
+        written = viewer.record(record, shown, design, run_directory=run_dir, trajectory=trajectory)
+        out.print(str(written), soft_wrap=True, highlight=False)
+        return 0
+    running = viewer.view(shown, design, run_directory=run_dir, trajectory=trajectory, port=port)
+    print(f"viewer: {running.address} (Ctrl-C ends it)", flush=True)  # noqa: T201 - at once, also into a pipe
+    running.wait()
+    return 0

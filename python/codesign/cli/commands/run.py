@@ -1,0 +1,151 @@
+"""Commands about runs: optimize, resume, runs, report, validate."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Table
+
+from codesign.cli.console import err, out, print_json, print_run
+from codesign.cli.options import DEFAULT_STUDY, ClusterOption, JsonOption, RunArgument, StudyOption, WorkersOption
+from codesign.errors import StudyError
+
+if TYPE_CHECKING:
+    from codesign.search.optimization import Resources
+
+commands = typer.Typer()
+
+
+@commands.command(
+    epilog="Example: `codesign optimize --population 25 --generations 40 --seed 1 --workers 2 --out runs/a`"
+)
+def optimize(
+    study: StudyOption = DEFAULT_STUDY,
+    population: Annotated[int | None, typer.Option(min=2, help="Designs per generation.")] = None,
+    generations: Annotated[int | None, typer.Option(min=1, help="Generations, the start population included.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Decides all that is random; default: the study's.")] = None,
+    workers: WorkersOption = None,
+    cluster: ClusterOption = None,
+    out_dir: Annotated[Path | None, typer.Option("--out", help="New folder of the run.")] = None,
+    algorithm: Annotated[
+        str | None, typer.Option(help="nsga2, nsga3, agemoea, agemoea2, smsemoa or random; default: the study's.")
+    ] = None,
+    start: Annotated[str, typer.Option(help="sobol, sobol-plain (as in the paper) or random.")] = "sobol",
+    steady: Annotated[bool, typer.Option(help="Offspring without waiting for whole generations.")] = False,
+    wall_time: Annotated[float | None, typer.Option(help="Seconds after which no new design is tried.")] = None,
+    stall_generations: Annotated[
+        int | None, typer.Option(help="Stop after so many generations without gain of hypervolume.")
+    ] = None,
+    no_cache: Annotated[bool, typer.Option("--no-cache", help="Compute everything again.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """The study: searches the design grid for the best compromises."""
+    from codesign.chain.study import load_study
+    from codesign.search.optimization import optimize as run_optimize
+    from codesign.search.progress import ProgressBar
+
+    loaded = load_study(study)
+    folder = out_dir or Path("runs") / f"{loaded.name}-{datetime.now(UTC):%Y%m%d-%H%M%S}"
+    resources: Resources = {"workers": workers, "cluster": cluster}
+    if no_cache:
+        resources["cache"] = None
+    try:
+        with ProgressBar(loaded.name) as bar:
+            resources["progress"] = bar
+            run = run_optimize(
+                loaded,
+                out=folder,
+                population=population,
+                generations=generations,
+                seed=seed,
+                algorithm=algorithm,
+                start=start,
+                steady=steady,
+                wall_time=wall_time,
+                stall_generations=stall_generations,
+                **resources,
+            )
+    except ValueError as error:
+        raise StudyError(str(error)) from error
+    except KeyboardInterrupt:
+        err.print(f"interrupted; continue with: codesign resume {folder}")
+        return 130
+    return print_run(run, as_json)
+
+
+@commands.command(epilog="Example: `codesign resume runs/a`")
+def resume(
+    run_dir: RunArgument,
+    workers: WorkersOption = None,
+    cluster: ClusterOption = None,
+    evaluations: Annotated[int | None, typer.Option(help="A larger budget than the run had.")] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Continues an interrupted run, as if it had never stopped."""
+    from codesign.search.optimization import resume as run_resume
+    from codesign.search.progress import ProgressBar
+
+    try:
+        with ProgressBar(run_dir.name) as bar:
+            run = run_resume(run_dir, workers=workers, cluster=cluster, evaluations=evaluations, progress=bar)
+    except KeyboardInterrupt:
+        err.print(f"interrupted; continue with: codesign resume {run_dir}")
+        return 130
+    return print_run(run, as_json)
+
+
+@commands.command("runs", epilog="Example: `codesign runs runs --json`")
+def runs_command(
+    folder: Annotated[Path, typer.Argument(help="Folder that holds runs, at any depth.")] = Path("runs"),
+    compare: Annotated[bool, typer.Option(help="Compare their fronts in one common box.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Lists the runs in a folder, or compares their fronts."""
+    from codesign.storage.runs import compare_runs, find_runs, list_runs, load_run
+
+    rows = compare_runs([load_run(run) for run in find_runs(folder)]) if compare else list_runs(folder)
+    if as_json:
+        print_json(rows)
+        return 0
+    table = Table()
+    columns = ("run", "study", "algorithm", "seed", "designs", "front", "hypervolume", "seconds", "outcome")
+    for name in columns:
+        table.add_column(name)
+    for row in rows:
+        values = [row.get(name, "") for name in columns]
+        table.add_row(*(f"{v:.5g}" if isinstance(v, float) else str(v) for v in values))
+    out.print(table)
+    return 0
+
+
+@commands.command(epilog="Example: `codesign report runs/a`")
+def report(run_dir: RunArgument, as_json: JsonOption = False) -> int:
+    """One self-contained HTML page and the figures of a run."""
+    from codesign.report import write_report
+
+    paths = write_report(run_dir)
+    if as_json:
+        print_json({"page": str(paths.html), "figures": [str(path) for path in paths.figures]})
+    else:
+        out.print(f"report: {paths.html.resolve()}", soft_wrap=True)
+    return 0
+
+
+@commands.command(epilog="Example: `codesign validate runs/a --designs recommended --designs best`")
+def validate(
+    run_dir: RunArgument,
+    designs: Annotated[list[str] | None, typer.Option(help="recommended, best, front, spread:N or a number.")] = None,
+    trajectories: Annotated[list[str] | None, typer.Option(help="Of the study; default: its [validation].")] = None,
+    seeds: Annotated[int, typer.Option(min=0, help="Disturbed repetitions of each flight.")] = 5,
+    workers: WorkersOption = None,
+) -> int:
+    """Flies chosen designs and the original on validation trajectories; the report shows the result."""
+    from codesign.followup.validation import DEFAULT_DESIGNS
+    from codesign.followup.validation import validate as run_validate
+
+    run_validate(run_dir, designs or DEFAULT_DESIGNS, trajectories or None, seeds=seeds, workers=workers)
+    out.print(f"validated; show it with: codesign report {run_dir}", soft_wrap=True)
+    return 0

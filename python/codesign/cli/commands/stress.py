@@ -1,0 +1,80 @@
+"""The command about any part: stress."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from codesign.cli.console import print_json, print_stress
+from codesign.cli.options import JsonOption
+
+commands = typer.Typer()
+
+
+@commands.command(
+    epilog="Example: `codesign stress part.stl --scale 1e-3 --fix near:0,0,0 --load 'normal:0,0,1: 0 0 -250'`"
+)
+def stress(
+    part: Annotated[Path, typer.Argument(metavar="PART", help="Closed surface: STL, binary or ASCII, or a STEP file.")],
+    fix: Annotated[list[str], typer.Option(metavar="SEL", help="Held in all directions; may be repeated.")],
+    load: Annotated[list[str], typer.Option(metavar="'SEL: FX FY FZ'", help="Total force in N; may be repeated.")],
+    scale: Annotated[float, typer.Option(help="Meters per unit of an STL file and of the selections.")] = 1e-3,
+    material: Annotated[
+        str, typer.Option(help="ergal, aluminium_6061_t6, steel_s235, titanium_ti6al4v, or E_GPa,nu,yield_MPa[,kg/m3].")
+    ] = "ergal",
+    edge_length: Annotated[
+        float | None, typer.Option(metavar="MM", help="Edge length of the elements; default: from the wall thickness.")
+    ] = None,
+    vtu: Annotated[Path | None, typer.Option(help="Where to write displacement and stress, for ParaView.")] = None,
+    png: Annotated[Path | None, typer.Option(help="Where to write a picture of the stressed part.")] = None,
+    exclusion: Annotated[
+        float | None,
+        typer.Option(
+            metavar="MM",
+            help="Ignore stress peaks within this distance of borders of clamps; default: a fifth of the wall.",
+        ),
+    ] = None,
+    smooth: Annotated[
+        bool, typer.Option("--smooth", help="The file is a coarse tessellation of curved faces: curve its facets back.")
+    ] = False,
+    repair: Annotated[
+        bool,
+        typer.Option(
+            "--repair", help="Make one solid of a file with doubled or turned facets, gaps, overlapping bodies."
+        ),
+    ] = False,
+    no_simplify: Annotated[
+        bool, typer.Option("--no-simplify", help="Keep edges that are tiny (0.05 mm) beside the elements.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Safety factor of any closed surface; exit code 1 if the material yields.
+
+    SEL is near:x,y,z (the smooth face nearest to a point), box:x0,y0,z0,x1,y1,z1 (all faces inside) or
+    normal:nx,ny,nz[:degrees] (faces that look there), in the file's units.
+    """
+    from codesign.cli.stress import stress_document
+    from codesign.cli.stress_options import find_material
+
+    document = stress_document(
+        part,
+        scale,
+        find_material(material),
+        fix,
+        load,
+        edge_length,
+        vtu,
+        png,
+        exclusion,
+        smooth,
+        repair,
+        not no_simplify,
+    )
+    if as_json:
+        print_json(document)
+    else:
+        print_stress(document)
+    factor = document["safety_factor"]
+    return 0 if factor is None or factor >= 1.0 else 1

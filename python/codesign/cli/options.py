@@ -1,0 +1,37 @@
+"""Options and arguments that several commands have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from codesign.errors import DesignError
+
+StudyOption = Annotated[str, typer.Option("--study", "-s", help="A shipped study's name or the path of a study.toml.")]
+SetOption = Annotated[list[str], typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
+TrajectoryOption = Annotated[str | None, typer.Option("--trajectory", "-t", help="A trajectory of the study.")]
+WorkersOption = Annotated[int | None, typer.Option(min=1, help="Worker processes; default: the study's.")]
+ClusterOption = Annotated[str | None, typer.Option(help="Dask scheduler tcp://host:port, or local:N.")]
+RunArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run.")]
+DEFAULT_STUDY = "ironcub"
+EXAMPLE_DESIGN = "--set angle=15 --set distance=42 --set offset=80 --set length=108"
+
+
+def parse_design(assignments: list[str]) -> dict[str, float]:
+    """Design values from NAME=VALUE texts; raises DesignError for anything else."""
+    design: dict[str, float] = {}
+    for text in assignments:
+        name, equals, value = text.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = float("nan")
+        if not equals or number != number:
+            raise DesignError(f"--set {text}: expected NAME=NUMBER, for example angle=15")
+        if name.strip() in design:
+            raise DesignError(f"--set {text}: {name.strip()} is given twice")
+        design[name.strip()] = number
+    return design
