@@ -15,7 +15,7 @@ namespace codesign {
 namespace {
 
 fem::PartCase make_case(fem::SurfaceMesh surface, fem::SizeField size, fem::Material material,
-                        std::vector<fem::Support> supports, std::vector<fem::Load> loads,
+                        std::vector<fem::Support> supports, std::vector<fem::LoadCase> cases,
                         const fem::StaticSettings& settings, double facet_angle_deg,
                         double tolerance, int max_refinements) {
   fem::PartCase part;
@@ -24,7 +24,7 @@ fem::PartCase make_case(fem::SurfaceMesh surface, fem::SizeField size, fem::Mate
   part.mesh_options.facet_angle = facet_angle_deg * fem::kDegree;
   part.material = std::move(material);
   part.supports = std::move(supports);
-  part.loads = std::move(loads);
+  part.cases = std::move(cases);
   part.settings = settings;
   part.tolerance = tolerance;
   part.max_refinements = max_refinements;
@@ -34,10 +34,16 @@ fem::PartCase make_case(fem::SurfaceMesh surface, fem::SizeField size, fem::Mate
 }  // namespace
 
 void bind_evaluate(py::module_& m) {
+  py::class_<fem::LoadCase>(m, "LoadCase", "Loads that act together.")
+      .def(py::init<std::string, std::vector<fem::Load>, double>(), "name"_a, "loads"_a,
+           "least_safety_factor"_a = 1.0)
+      .def_readonly("name", &fem::LoadCase::name)
+      .def_readonly("loads", &fem::LoadCase::loads)
+      .def_readonly("least_safety_factor", &fem::LoadCase::least_safety_factor);
   py::class_<fem::PartCase>(m, "PartCase",
-                            "One part and its load case; supports and loads name surface faces.")
+                            "One part and its load cases; supports and loads name surface faces.")
       .def(py::init(&make_case), py::kw_only(), "surface"_a, "size"_a, "material"_a, "supports"_a,
-           "loads"_a,
+           "cases"_a,
            py::arg_v("settings", fem::StaticSettings{}, "codesign._core.fem.StaticSettings()"),
            "facet_angle_deg"_a = 25.0, "tolerance"_a = fem::PartCase{}.tolerance,
            "max_refinements"_a = 0)
@@ -45,7 +51,7 @@ void bind_evaluate(py::module_& m) {
       .def_readwrite("size", &fem::PartCase::size)
       .def_readonly("material", &fem::PartCase::material)
       .def_readonly("supports", &fem::PartCase::supports)
-      .def_readonly("loads", &fem::PartCase::loads)
+      .def_readonly("cases", &fem::PartCase::cases)
       .def_readonly("settings", &fem::PartCase::settings)
       .def_readwrite("tolerance", &fem::PartCase::tolerance, "relative, of the peak stress")
       .def_readwrite("max_refinements", &fem::PartCase::max_refinements, "0: one pass")
@@ -53,7 +59,11 @@ void bind_evaluate(py::module_& m) {
       .def_readwrite("buckling", &fem::PartCase::buckling, "buckling factors wanted");
   py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")
       .def_readonly("mesh", &fem::PartAnalysis::mesh)
-      .def_readonly("result", &fem::PartAnalysis::result)
+      .def_readonly("case_names", &fem::PartAnalysis::case_names)
+      .def_readonly("results", &fem::PartAnalysis::results, "StaticResult of every load case")
+      .def_readonly("governing", &fem::PartAnalysis::governing,
+                    "the case of the smallest safety factor over what it asks for")
+      .def_property_readonly("result", &fem::PartAnalysis::result, "of the governing case")
       .def_readonly("frequencies", &fem::PartAnalysis::frequencies,
                     "(modes,) Hz, ascending, of the whole part")
       .def_readonly("buckling_factors", &fem::PartAnalysis::buckling_factors,

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "model_error.hpp"
+
 namespace codesign::fem {
 
 namespace {
@@ -66,6 +68,26 @@ Eigen::VectorXd buckling_factors(const PartCase& part, const StaticSystem& syste
   return factors;
 }
 
+// Every load case by one factor, and which of them governs: the first where several are equal.
+void solve_cases(const PartCase& part, const StaticSystem& system, PartAnalysis& analysis) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < part.cases.size(); ++i) {
+    const LoadCase& load_case = part.cases[i];
+    try {
+      analysis.results.push_back(system.solve(load_case.loads));
+    } catch (const ModelError& error) {
+      if (part.cases.size() == 1) throw;
+      throw ModelError("load case '" + load_case.name + "': " + error.what());
+    }
+    analysis.case_names.push_back(load_case.name);
+    const double reserve = analysis.results[i].safety_factor / load_case.least_safety_factor;
+    if (reserve < least) {
+      least = reserve;
+      analysis.governing = i;
+    }
+  }
+}
+
 // One mesh and its solution; times are added to those of the passes before.
 void run_pass(const PartCase& part, PartAnalysis& analysis) {
   const Clock::time_point start = Clock::now();
@@ -73,10 +95,13 @@ void run_pass(const PartCase& part, PartAnalysis& analysis) {
   analysis.mesh_seconds += seconds_since(start);
   const Clock::time_point meshed = Clock::now();
   const StaticSystem system(analysis.mesh, part.material, part.supports, part.settings);
-  analysis.result = system.solve(part.loads);
+  solve_cases(part, system, analysis);
   if (part.modes > 0) analysis.frequencies = frequencies(part, system);
-  if (part.buckling > 0) {
-    analysis.buckling_factors = buckling_factors(part, system, analysis.result.displacement);
+  for (std::size_t i = 0; part.buckling > 0 && i < analysis.results.size(); ++i) {
+    Eigen::VectorXd factors = buckling_factors(part, system, analysis.results[i].displacement);
+    if (i == 0 || factors[0] < analysis.buckling_factors[0]) {
+      analysis.buckling_factors = std::move(factors);
+    }
   }
   analysis.solve_seconds += seconds_since(meshed);
 }
@@ -93,18 +118,24 @@ SizeField refine_around(const SizeField& size, const Eigen::Vector3d& point) {
 
 PartAnalysis analyse_part(const PartCase& part) {
   if (!(part.tolerance > 0)) throw std::invalid_argument("tolerance must be > 0");
+  if (part.cases.empty()) throw std::invalid_argument("cases: a part needs a load case");
+  for (const LoadCase& load_case : part.cases) {
+    if (!(load_case.least_safety_factor > 0)) {
+      throw std::invalid_argument("least_safety_factor must be > 0");
+    }
+  }
   PartAnalysis analysis;
   analysis.size = part.size;
   run_pass(part, analysis);
   const auto within = [&](const PartAnalysis& a) {
-    return std::max(a.result.stress_error, a.change * a.result.peak_stress) <=
-           part.tolerance * a.result.peak_stress;
+    return std::max(a.result().stress_error, a.change * a.result().peak_stress) <=
+           part.tolerance * a.result().peak_stress;
   };
   analysis.converged = within(analysis);
   while (analysis.refinements < part.max_refinements &&
          !(analysis.converged && analysis.refinements > 0)) {
     PartAnalysis finer;
-    finer.size = refine_around(analysis.size, analysis.result.peak_position);
+    finer.size = refine_around(analysis.size, analysis.result().peak_position);
     finer.refinements = analysis.refinements + 1;
     finer.mesh_seconds = analysis.mesh_seconds;
     finer.solve_seconds = analysis.solve_seconds;
@@ -115,8 +146,8 @@ PartAnalysis analyse_part(const PartCase& part) {
       analysis.stopped = error.what();
       return analysis;
     }
-    const double peak = finer.result.peak_stress;
-    finer.change = peak > 0 ? std::abs(peak - analysis.result.peak_stress) / peak : 0.0;
+    const double peak = finer.result().peak_stress;
+    finer.change = peak > 0 ? std::abs(peak - analysis.result().peak_stress) / peak : 0.0;
     finer.converged = within(finer);
     analysis = std::move(finer);
   }

@@ -12,7 +12,14 @@
 
 namespace codesign::fem {
 
-// One part and one load case, ready to be meshed and solved; supports and loads name faces of the
+// Loads that act together, and the safety factor that they ask for.
+struct LoadCase {
+  std::string name;
+  std::vector<Load> loads;
+  double least_safety_factor = 1.0;
+};
+
+// One part and its load cases, ready to be meshed and solved; supports and loads name faces of the
 // surface.
 struct PartCase {
   SurfaceMesh surface;
@@ -20,7 +27,7 @@ struct PartCase {
   MeshOptions mesh_options;
   Material material;
   std::vector<Support> supports;
-  std::vector<Load> loads;
+  std::vector<LoadCase> cases;
   StaticSettings settings;
   double tolerance = 0.05;  // wanted relative error of the peak stress, and so of the safety factor
   int max_refinements = 0;  // local refinements around the peak allowed to reach it; 0: one pass
@@ -28,11 +35,17 @@ struct PartCase {
   int buckling = 0;         // buckling factors wanted
 };
 
+// One factorization serves all load cases.
 struct PartAnalysis {
   TetMesh mesh;
-  StaticResult result;
+  std::vector<std::string> case_names;
+  std::vector<StaticResult> results;  // one per load case
+  std::size_t governing = 0;  // the case of the smallest safety factor over what it asks for
+
+  const StaticResult& result() const { return results[governing]; }
   Eigen::VectorXd frequencies;  // (modes) Hz, ascending, of the whole part
-  // (buckling) of the load, ascending, of the whole part; infinity where there is none
+  // (buckling) of the load, ascending, of the whole part and the case that buckles first; infinity
+  // where there is none
   Eigen::VectorXd buckling_factors;
   SizeField size;          // that the mesh was made with
   bool converged = false;  // estimated error, and the change if there is one, within the tolerance

@@ -15,13 +15,12 @@ from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families
 from codesign.chain.flight import find_trajectory, flight_settings, joint_names, refusals
 from codesign.chain.judge import judge
+from codesign.chain.loads import case_settings
 from codesign.chain.provenance import provenance
 from codesign.errors import CodesignError
 from codesign.fem import Material
 from codesign.parts.load_case import (
     Confirmation,
-    PressedFace,
-    PushedFace,
     StressSettings,
     confirm,
     part_case,
@@ -34,7 +33,7 @@ from codesign.robot.assembly import PartBody, assemble
 from codesign.robot.clearance import convex_pieces, flown_interference
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
-from codesign.study.config import LoadConfig, StudyConfig
+from codesign.study.config import StudyConfig
 from codesign.study.parts import make_part
 from codesign.transforms import Matrix
 from codesign.units import GIGA, MEGA, MILLIMETRE
@@ -146,7 +145,7 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
             yield_strength=material.yield_strength_mpa * MEGA,
         ),
         supports=tuple(part.supports),
-        loads=tuple(_face_load(load) for load in part.loads),
+        cases=case_settings(part, config),
         geometry=stress.geometry,
         load=stress.load,
         support=stress.support,
@@ -163,15 +162,6 @@ def _asks_for(config: StudyConfig, *names: str) -> bool:
     """Whether an objective or a constraint needs one of these numbers of a part."""
     asked = {*config.constraints.part_minima, *config.constraints.limits, *config.objectives.names}
     return any(name in key for name in names for key in asked)
-
-
-def _face_load(load: LoadConfig) -> PressedFace | PushedFace:
-    """The load of a part as its section in the study says."""
-    if load.force_n is not None:
-        return PushedFace(load.face, load.force_n)
-    if load.pressing_n is None:
-        raise ValueError(f"load on {load.face!r}: neither pressing_n nor force_n")
-    return PressedFace(load.face, load.pressing_n)
 
 
 def confirm_parts(study: StudyData, design: Design) -> dict[str, Confirmation]:

@@ -107,7 +107,10 @@ def limits(config: StudyConfig) -> Iterator[Limit]:
     asked = config.constraints
     yield Limit(quantity(FLIGHT_MISSED), most=0.0)
     for key, least in asked.part_minima.items():
-        yield Limit(quantity(key), least=least, scale=least)
+        if key == "safety_factor" and any(case.safety_factor_min for part in config.parts for case in part.load_cases):
+            yield from case_limits(config, least)
+        else:
+            yield Limit(quantity(key), least=least, scale=least)
     if config.interference is not None:
         for key, gap_mm in (
             ("body_clearance", asked.body_clearance_min_mm),
@@ -120,6 +123,16 @@ def limits(config: StudyConfig) -> Iterator[Limit]:
             yield Limit(quantity(key), least=bound.minimum, scale=abs(bound.minimum) or 1.0)
         if bound.maximum is not None:
             yield Limit(quantity(key), most=bound.maximum, scale=abs(bound.maximum) or 1.0)
+
+
+def case_limits(config: StudyConfig, otherwise: float) -> Iterator[Limit]:
+    """A limit for every load case of every part, since some ask for a safety factor of their own."""
+    for part in config.parts:
+        for case in part.load_cases:
+            least = case.safety_factor_min or otherwise
+            path = f"parts.{part.name}.cases.{case.name}.safety_factor"
+            label = f"{part.name}, load case {case.name}: safety factor"
+            yield Limit(Quantity(path, label, path=path), least=least, scale=least)
 
 
 def value_of(document: Document, wanted: Quantity, functions: Functions) -> float | None:

@@ -192,7 +192,7 @@ class Order:
             "mass": part.mass_properties().mass,
             "load_case": {
                 "supports": msgspec.to_builtins(settings.supports),
-                "loads": msgspec.to_builtins(settings.loads),
+                "cases": msgspec.to_builtins(settings.load_cases),
                 "settings": msgspec.to_builtins(config.fem),
                 "model": models.get(original.name),
             },

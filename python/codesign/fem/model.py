@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from codesign._core import fem as _core
 from codesign._core.fem import Material as Material
 from codesign._core.fem import TetMesh as TetMesh
+from codesign.errors import ModelError
 
 MAX_BEND_DEG = 30.0  # between two triangles of a smooth face
 
@@ -69,6 +70,14 @@ class _Rule:
 
 
 @dataclass(frozen=True)
+class _Names:
+    faces: tuple[str, ...]
+
+    def on(self, mesh: TetMesh) -> _core.Selection:  # noqa: ARG002 (the same for every mesh)
+        return _core.Selection(faces=list(self.faces))
+
+
+@dataclass(frozen=True)
 class _Union:
     parts: tuple[Where, ...]
 
@@ -81,9 +90,18 @@ class _Union:
         )
 
 
-def resolve(mesh: TetMesh, where: Where) -> _core.Selection:
-    """The faces, triangles and nodes of a mesh that a name or a selection stands for."""
-    return _core.Selection(faces=[where]) if isinstance(where, str) else where.on(mesh)
+def resolve(mesh: TetMesh | None, where: Where) -> _core.Selection:
+    """The faces, triangles and nodes of a mesh that a name or a selection stands for.
+
+    Raises: ModelError: without a mesh (a part that is yet to be meshed) only names of faces mean anything.
+    """
+    if isinstance(where, str):
+        return _core.Selection(faces=[where])
+    if isinstance(where, _Names):
+        return _core.Selection(faces=list(where.faces))
+    if mesh is None:
+        raise ModelError("supports and loads of a part name its faces: other selections need the mesh")
+    return where.on(mesh)
 
 
 def select_nodes(nodes: ArrayLike) -> Selection:
@@ -122,6 +140,11 @@ def faces_with_normal(normal: ArrayLike, angle_deg: float = 1.0) -> Selection:
     return _Rule(lambda mesh: _core.triangles_with_normal(mesh, direction, np.deg2rad(angle_deg)))
 
 
+def select_names(*faces: str) -> Selection:
+    """Faces by name; the only selection of several faces that means something before there is a mesh."""
+    return _Names(faces)
+
+
 def select_union(*parts: Where) -> Selection:
     """Everything that any of the parts selects."""
     return _Union(parts)
@@ -143,7 +166,7 @@ class Support:
     displacement: ArrayLike | None = None
     symmetry: bool = False
 
-    def native(self, mesh: TetMesh) -> _core.Support:
+    def native(self, mesh: TetMesh | None) -> _core.Support:
         """The native value on a mesh."""
         if not self.axes or set(self.axes) - set("xyz"):
             raise ValueError(f"axes must be letters of 'xyz', got {self.axes!r}")
@@ -158,7 +181,7 @@ class Force:
     where: Where
     force: ArrayLike
 
-    def native(self, mesh: TetMesh) -> _core.Force:
+    def native(self, mesh: TetMesh | None) -> _core.Force:
         """The native value on a mesh."""
         return _core.Force(resolve(mesh, self.where), _vector(self.force, "force"))
 
@@ -170,7 +193,7 @@ class Traction:
     where: Where
     traction: ArrayLike
 
-    def native(self, mesh: TetMesh) -> _core.Traction:
+    def native(self, mesh: TetMesh | None) -> _core.Traction:
         """The native value on a mesh."""
         return _core.Traction(resolve(mesh, self.where), _vector(self.traction, "traction"))
 
@@ -182,7 +205,7 @@ class Pressure:
     where: Where
     pressure: float
 
-    def native(self, mesh: TetMesh) -> _core.Pressure:
+    def native(self, mesh: TetMesh | None) -> _core.Pressure:
         """The native value on a mesh."""
         return _core.Pressure(resolve(mesh, self.where), float(self.pressure))
 
@@ -213,7 +236,7 @@ class AffineTraction:
     moment: ArrayLike = (0.0, 0.0, 0.0)
     region: Disc | None = None
 
-    def native(self, mesh: TetMesh) -> _core.AffineTraction:
+    def native(self, mesh: TetMesh | None) -> _core.AffineTraction:
         """The native value on a mesh."""
         region = None
         if self.region is not None:
@@ -229,7 +252,7 @@ class Acceleration:
 
     acceleration: ArrayLike
 
-    def native(self, mesh: TetMesh) -> _core.Acceleration:  # noqa: ARG002 (the same for every mesh)
+    def native(self, mesh: TetMesh | None) -> _core.Acceleration:  # noqa: ARG002 (the same for every mesh)
         """The native value on a mesh."""
         return _core.Acceleration(_vector(self.acceleration, "acceleration"))
 
@@ -240,7 +263,7 @@ class BodyForce:
 
     force: ArrayLike
 
-    def native(self, mesh: TetMesh) -> _core.BodyForce:  # noqa: ARG002 (the same for every mesh)
+    def native(self, mesh: TetMesh | None) -> _core.BodyForce:  # noqa: ARG002 (the same for every mesh)
         """The native value on a mesh."""
         return _core.BodyForce(np.atleast_2d(np.asarray(self.force, dtype=float)))
 
@@ -248,12 +271,21 @@ class BodyForce:
 Load = Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce
 
 
-def native_supports(mesh: TetMesh, supports: Sequence[Support]) -> list[_core.Support]:
+@dataclass(frozen=True)
+class LoadCase:
+    """Loads that act together, and the safety factor that they ask for."""
+
+    name: str
+    loads: Sequence[Load]
+    safety_factor_min: float = 1.0
+
+
+def native_supports(mesh: TetMesh | None, supports: Sequence[Support]) -> list[_core.Support]:
     """Supports as the native solver takes them."""
     return [support.native(mesh) for support in supports]
 
 
-def native_loads(mesh: TetMesh, loads: Sequence[Load]) -> list[Any]:
+def native_loads(mesh: TetMesh | None, loads: Sequence[Load]) -> list[Any]:
     """Loads as the native solver takes them."""
     return [load.native(mesh) for load in loads]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from codesign import _core, fem
 from codesign.errors import ModelError, StudyError
+from codesign.fem.model import native_loads, native_supports
 from codesign.fem.static import Exclusion
 from codesign.names import nearest
 
@@ -49,9 +50,21 @@ class PushedFace:
         return np.asarray(self.force, dtype=float)
 
 
+PartLoad = PressedFace | PushedFace | fem.Load
+
+
+@dataclass(frozen=True, slots=True)
+class CaseSettings:
+    """Loads of a part that act together. safety_factor_min: what they ask for, None: what the study asks for."""
+
+    name: str
+    loads: tuple[PartLoad, ...]
+    safety_factor_min: float | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class StressSettings:
-    """How a part's stress is computed; the same for all parts of a study but for supports and loads.
+    """How a part's stress is computed; the same for all parts of a study but for supports and load cases.
 
     geometry: "simplified" or "full" (see the part). load, support: variant names that a part may offer.
     accuracy: "optimisation" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
@@ -62,7 +75,7 @@ class StressSettings:
 
     material: fem.Material
     supports: Sequence[str]
-    loads: Sequence[PressedFace | PushedFace]
+    cases: Sequence[CaseSettings]
     geometry: Literal["simplified", "full"] = "simplified"
     load: str = "uniform"
     support: str = "published"
@@ -93,11 +106,23 @@ def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     thickness = 2.0 * properties.volume / areas.sum()
     edge_length = thickness * (0.2 if settings.accuracy == "fine" else 0.35)  # the peak's own size is found by refining
-    loads = [face_force(surface, load, part.name) for load in settings.loads]
-    return native_case(settings, surface, fem.SizeField(edge_length), [clamp(*settings.supports)], loads)
+    cases = load_cases(settings, lambda load: face_force(surface, load, part.name))
+    return native_case(settings, surface, fem.SizeField(edge_length), [clamp(*settings.supports)], cases)
 
 
-def face_force(surface: fem.SurfaceMesh, load: PressedFace | PushedFace, part: str) -> _core.fem.Force:
+def load_cases(settings: StressSettings, on_face: Callable[[PressedFace | PushedFace], fem.Load]) -> list[fem.LoadCase]:
+    """The load cases of a part as the solver takes them. on_face: what a total force on a face means for the part."""
+    return [
+        fem.LoadCase(
+            case.name,
+            [on_face(load) if isinstance(load, PressedFace | PushedFace) else load for load in case.loads],
+            1.0 if case.safety_factor_min is None else case.safety_factor_min,
+        )
+        for case in settings.cases
+    ]
+
+
+def face_force(surface: fem.SurfaceMesh, load: PressedFace | PushedFace, part: str) -> fem.Force:
     """The total force of a load on a named face of a part's surface. Raises: StudyError (no such face), ModelError."""
     if load.face not in surface.face_names:
         raise StudyError(f"{part}: no face {load.face!r}; {nearest(load.face, filter(None, surface.face_names))}")
@@ -110,7 +135,7 @@ def face_force(surface: fem.SurfaceMesh, load: PressedFace | PushedFace, part: s
         force = load.along(())
     if not force.any():
         raise ModelError(f"{part}: the force on face {load.face!r} is zero")
-    return _core.fem.Force(_core.fem.Selection(faces=[load.face]), force)
+    return fem.Force(load.face, force)
 
 
 def pressing_direction(surface: fem.SurfaceMesh, face: str) -> Vector:
@@ -131,17 +156,17 @@ def pressing_direction(surface: fem.SurfaceMesh, face: str) -> Vector:
     return np.asarray(direction / length)
 
 
-def clamp(*faces: str) -> _core.fem.Support:
+def clamp(*faces: str) -> fem.Support:
     """Named faces fixed in all directions."""
-    return _core.fem.Support(_core.fem.Selection(faces=list(faces)))
+    return fem.Support(fem.select_names(*faces))
 
 
 def native_case(
     settings: StressSettings,
     surface: fem.SurfaceMesh,
     size: fem.SizeField,
-    supports: Sequence[_core.fem.Support],
-    loads: Sequence[_core.fem.Force | _core.fem.AffineTraction],
+    supports: Sequence[fem.Support],
+    cases: Sequence[fem.LoadCase],
     *,
     copies: int = 1,
     facet_angle_deg: float = 25.0,
@@ -158,8 +183,8 @@ def native_case(
         surface=surface,
         size=size,
         material=settings.material,
-        supports=list(supports),
-        loads=list(loads),
+        supports=native_supports(None, supports),
+        cases=[_core.LoadCase(case.name, native_loads(None, case.loads), case.safety_factor_min) for case in cases],
         settings=static,
         facet_angle_deg=facet_angle_deg,
         tolerance=settings.tolerance,
@@ -171,7 +196,7 @@ def native_case(
 
 
 def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
-    """Numbers of one part for JSON, SI units.
+    """Numbers of one part for JSON, SI units: those of the load case that governs, and the strength in every case.
 
     `buckling_factor` is None if the load cannot buckle the part, `safety_factor` if it does not stress it.
     """
@@ -190,6 +215,11 @@ def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
         "com": [float(x) for x in mass.com],
         "inertia": [[float(x) for x in row] for row in mass.inertia],
         **strength_document(result),
+        "load_case": analysis.case_names[analysis.governing],
+        "cases": {
+            name: strength_document(each) | {"max_displacement": each.max_displacement, "work": each.work}
+            for name, each in zip(analysis.case_names, analysis.results, strict=True)
+        },
         "tolerance_reached": analysis.converged,
         **optional,
         "max_displacement": result.max_displacement,

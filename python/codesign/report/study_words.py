@@ -8,7 +8,7 @@ from dataclasses import replace
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import PartWords
 from codesign.report.words import listed, plural
-from codesign.study.config import JointGroupConfig, LoadConfig, PartConfig, StudyConfig
+from codesign.study.config import JointGroupConfig, LoadCaseConfig, LoadConfig, PartConfig, StudyConfig
 
 TIMES = {0.5: "half", 1.0: "once", 2.0: "twice"}
 
@@ -44,16 +44,27 @@ def part_words(config: StudyConfig) -> dict[str, PartWords]:
 
 
 def _load_case(config: StudyConfig, part: PartConfig) -> str:
-    loads = listed([_load(load) for load in part.loads]) or "no load"
+    loads = "; ".join(_case(case, len(part.load_cases) > 1) for case in part.load_cases)
     held = f"face {listed(part.supports)} held" if part.supports else "not held"
     return f"{loads}, {held} (load model “{config.fem.load}”, support model “{config.fem.support}”)"
 
 
+def _case(case: LoadCaseConfig, named: bool) -> str:
+    loads = listed([_load(load) for load in case.loads])
+    asked = f", at least {case.safety_factor_min:g} times" if case.safety_factor_min is not None else ""
+    return f"{case.name}: {loads}{asked}" if named else loads
+
+
 def _load(load: LoadConfig) -> str:
-    if load.force_n is not None:
-        vector = ", ".join(f"{component:g}" for component in load.force_n)
-        return f"({vector})\u202fN on face {load.face}"
-    return f"{load.pressing_n:g}\u202fN pressing on face {load.face}"
+    value = getattr(load, load.kind)
+    number = f"({', '.join(f'{x:g}' for x in value)})" if isinstance(value, tuple) else f"{value:g}"
+    if load.kind == "acceleration_m_s2":
+        return f"acceleration {number}\u202fm/s²"
+    unit = "MPa" if load.kind.endswith("_mpa") else "N"
+    verb = {"pressing_n": "pressing on", "pressure_mpa": "pressure on"}.get(load.kind, "on")
+    remote = f" at ({', '.join(f'{x:g}' for x in load.point_mm)})\u202fmm" if load.point_mm else ""
+    moment = f" with ({', '.join(f'{x:g}' for x in load.moment_n_m)})\u202fN\u202fm" if load.moment_n_m else ""
+    return f"{number}\u202f{unit}{moment}{remote} {verb} face {load.face}"
 
 
 def _material(config: StudyConfig, part: PartConfig) -> str:

@@ -89,8 +89,22 @@ def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]
             yield f"variables.{name}.unit", f"{part.shape} expects {units[parameter]!r} for {parameter}"
     if not part.supports:
         yield f"{key}.supports", "empty: nothing would hold the part; name the faces that are clamped"
-    if not part.loads:
-        yield f"{key}.loads", "empty: nothing would load the part"
+    yield from _load_problems(part, key)
+
+
+def _load_problems(part: PartConfig, key: str) -> Iterator[Problem]:
+    if part.loads and part.cases:
+        yield f"{key}.loads", "either loads (one load case) or cases (by name)"
+    if twice := repeated(case.name for case in part.cases):
+        yield f"{key}.cases", f"two load cases have the name {twice!r}"
+    for case in part.load_cases:
+        if "." in case.name:
+            yield f"{key}.cases", f"a load case's name must not hold a dot: {case.name!r}"
+        if not case.loads:
+            yield (
+                f"{key}.cases[{case.name}].loads" if part.cases else f"{key}.loads",
+                "empty: nothing would load the part",
+            )
 
 
 def _number_problems(config: StudyConfig) -> Iterator[Problem]:

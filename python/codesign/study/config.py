@@ -9,6 +9,8 @@ from msgspec import Meta, Struct, field
 from codesign.robot.assembly import PartPlacement
 from codesign.robot.clearance import InterferenceSettings
 
+ONLY_CASE = "load"  # name of the load case of a part that has one
+
 Positive = Annotated[float, Meta(gt=0)]
 NonNegative = Annotated[float, Meta(ge=0)]
 Probability = Annotated[float, Meta(ge=0, le=1)]
@@ -45,21 +47,53 @@ class MaterialConfig(Section, frozen=True, kw_only=True):
 
 
 class LoadConfig(Section, frozen=True, kw_only=True):
-    """A total force on a named face, spread uniformly: either of the two.
+    """One load of a part: one kind of it.
 
-    pressing_n: presses against the face's mean outward normal. force_n: a vector in part axes, for round faces, whose
-    normals cancel, say.
+    pressing_n: total force on a face, against its mean outward normal. force_n: total force on a face, a vector in part
+    axes, for round faces, whose normals cancel, say. Both spread uniformly. With point_mm or moment_n_m the force acts
+    at that point (of part axes) and has that moment about it: a remote force, affine over the face. pressure_mpa:
+    against the outward normal everywhere. traction_mpa: force per area, the same everywhere. acceleration_m_s2: a field
+    like gravity on the whole part, without a face.
     """
 
-    face: Name
+    face: str = ""
     pressing_n: float | None = None
     force_n: Vector3 | None = None
+    point_mm: Vector3 | None = None
+    moment_n_m: Vector3 | None = None
+    pressure_mpa: float | None = None
+    traction_mpa: Vector3 | None = None
+    acceleration_m_s2: Vector3 | None = None
+
+    @property
+    def kind(self) -> str:
+        """The key that says what the load is."""
+        return next(name for name in LOAD_KINDS if getattr(self, name) is not None)
 
     def __post_init__(self) -> None:
-        if (self.pressing_n is None) == (self.force_n is None):
-            raise ValueError("a load needs either pressing_n or force_n = [x, y, z]")
-        if self.pressing_n == 0.0 or (self.force_n is not None and not any(self.force_n)):
-            raise ValueError("the force of a load is zero")
+        given = [name for name in LOAD_KINDS if getattr(self, name) is not None]
+        if len(given) != 1:
+            said = " and ".join(given) or "nothing"
+            raise ValueError(f"a load needs exactly one of {', '.join(LOAD_KINDS)}; given {said}")
+        value = getattr(self, given[0])
+        remote = self.point_mm is not None or self.moment_n_m is not None
+        if remote and self.force_n is None:
+            raise ValueError("point_mm and moment_n_m belong to force_n")
+        if not any(value if isinstance(value, tuple) else (value,)) and not any(self.moment_n_m or ()):
+            raise ValueError(f"{given[0]} of a load is zero")
+        if bool(self.face) == (given[0] == "acceleration_m_s2"):
+            raise ValueError("a load names its face, but for acceleration_m_s2, which acts on the whole part")
+
+
+LOAD_KINDS = ("pressing_n", "force_n", "pressure_mpa", "traction_mpa", "acceleration_m_s2")
+
+
+class LoadCaseConfig(Section, frozen=True, kw_only=True):
+    """Loads that act together. safety_factor_min: what they ask for, where it is not what the study asks for."""
+
+    name: Name
+    loads: list[LoadConfig]
+    safety_factor_min: Positive | None = None
 
 
 class PartConfig(Section, frozen=True, kw_only=True):
@@ -67,7 +101,8 @@ class PartConfig(Section, frozen=True, kw_only=True):
 
     shape: `module:Class`; the module is a file beside study.toml or any importable module.
     parameters: the part's parameter -> design variable. supports: faces that are clamped. options: further keyword
-    arguments of the class. density_kg_m3: of the part's mass, where it is not that of the material; reports say so.
+    arguments of the class. loads: of the only load case; or cases: any number of them, by name. density_kg_m3: of the
+    part's mass, where it is not that of the material; reports say so.
     """
 
     name: Name
@@ -76,9 +111,15 @@ class PartConfig(Section, frozen=True, kw_only=True):
     material: Name
     density_kg_m3: Positive | None = None
     supports: list[Name]
-    loads: list[LoadConfig]
+    loads: list[LoadConfig] = []
+    cases: list[LoadCaseConfig] = []
     placements: list[PartPlacement] = []
     options: dict[str, float | bool | str] = {}
+
+    @property
+    def load_cases(self) -> list[LoadCaseConfig]:
+        """The load cases, be there one or more."""
+        return self.cases or [LoadCaseConfig(name=ONLY_CASE, loads=self.loads)]
 
 
 class RobotConfig(Section, frozen=True, kw_only=True):

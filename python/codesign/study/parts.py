@@ -16,7 +16,7 @@ from codesign.robot.assembly import PartBody, assemble
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
 from codesign.study.checks import Problem, unknown
-from codesign.study.config import PartConfig, StudyConfig
+from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
 
 
 def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], design: Mapping[str, float]) -> Part:
@@ -38,8 +38,9 @@ def built_problems(
     for part in config.parts:
         part_class = part_classes[part.name]
         most = part_class.most_loads
-        if most is not None and len(part.loads) > most:
-            yield f"parts.{part.name}.loads", f"{part.shape} takes {most}, {len(part.loads)} are given"
+        for case in part.load_cases:
+            if most is not None and len(case.loads) > most:
+                yield _loads_key(part, case), f"{part.shape} takes {most}, {len(case.loads)} are given"
         wrong_options = list(_option_problems(part, part_class))
         yield from wrong_options
         if wrong_options:
@@ -87,15 +88,21 @@ def _face_problems(part: PartConfig, config: StudyConfig, built: Part) -> Iterat
     surface = None if hasattr(built, "stress_case") else built.fem_surface(config.fem.geometry)
     for face in part.supports:
         yield from unknown(f"parts.{part.name}.supports", "face", face, named)
-    for load in part.loads:
-        yield from unknown(f"parts.{part.name}.loads", "face", load.face, named)
-        if load.face in part.supports:
-            yield f"parts.{part.name}.loads", f"the load acts on {load.face!r}, which is held"
-        if load.pressing_n is not None and surface is not None and load.face in surface.face_names:
-            try:
-                pressing_direction(surface, load.face)
-            except ModelError as error:
-                yield f"parts.{part.name}.loads", f"pressing_n on {error}"
+    for case in part.load_cases:
+        for load in (load for load in case.loads if load.face):
+            key = _loads_key(part, case)
+            yield from unknown(key, "face", load.face, named)
+            if load.face in part.supports:
+                yield key, f"the load acts on {load.face!r}, which is held"
+            if load.pressing_n is not None and surface is not None and load.face in surface.face_names:
+                try:
+                    pressing_direction(surface, load.face)
+                except ModelError as error:
+                    yield key, f"pressing_n on {error}"
+
+
+def _loads_key(part: PartConfig, case: LoadCaseConfig) -> str:
+    return f"parts.{part.name}.cases[{case.name}].loads" if part.cases else f"parts.{part.name}.loads"
 
 
 def _place_problems(part: PartConfig, robot: RobotDescription, built: Part) -> Iterator[Problem]:

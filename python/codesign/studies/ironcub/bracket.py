@@ -14,7 +14,7 @@ from codesign import _core, fem
 from codesign.errors import GeometryError
 from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, box, cylinder, polar, stepped_hole, union
-from codesign.parts.load_case import StressSettings, clamp, native_case
+from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, clamp, load_cases, native_case
 from codesign.parts.part import Part, parameter
 from codesign.units import MILLIMETRE
 
@@ -213,26 +213,26 @@ class JetpackBracket(Part):
         moment = 2.0 / 3.0 * SEAT_RADIUS**3 - sum(y * math.pi * SEAT_HOLE_RADIUS**2 for _, y in SEAT_HOLES if y > 0.0)
         aside = np.array([0.0, moment / floor, 0.0]) * MILLIMETRE  # centroid of half of the floor
         centre = self.turbine_axis if settings.load == "thrust_line" else self.seat_centre
-        (load,) = settings.loads
-        force = load.along(self.slab_normal)
-        if force[1] != 0.0:
-            raise GeometryError(
-                f"{self.name}: the half y >= 0 is analysed: a force with a y component cannot be applied"
-            )
         whole = settings.geometry == "full"
-        traction = _core.fem.AffineTraction(
-            _core.fem.Selection(faces=[load.face]),
-            0.5 * force,
-            centre + aside,
-            np.zeros(3),
-            None if whole else _core.fem.Disc(self.seat_centre, self.slab_normal, self.seat_radius),
-        )
-        symmetry = _core.fem.Support(
-            _core.fem.Selection(faces=["symmetry"]), [False, True, False], np.zeros((0, 3)), True
-        )
-        return native_case(
-            settings, surface, self._size_field(settings), [clamp(*supports), symmetry], [traction], copies=2
-        )
+        disc = None if whole else fem.Disc(self.seat_centre, self.slab_normal, self.seat_radius)
+
+        def traction(load: PressedFace | PushedFace) -> fem.Load:
+            force = load.along(self.slab_normal)
+            if force[1] != 0.0:
+                raise GeometryError(
+                    f"{self.name}: the half y >= 0 is analysed: a force with a y component cannot be applied"
+                )
+            return fem.AffineTraction(load.face, 0.5 * force, centre + aside, region=disc)
+
+        for load in (load for case in settings.cases for load in case.loads):
+            if not isinstance(load, PressedFace | PushedFace | fem.Pressure):
+                kind = type(load).__name__
+                raise GeometryError(
+                    f"{self.name}: the half y >= 0 is analysed: it takes forces and pressures, no {kind}"
+                )
+        cases = load_cases(settings, traction)
+        held = [clamp(*supports), fem.Support("symmetry", axes="y", symmetry=True)]
+        return native_case(settings, surface, self._size_field(settings), held, cases, copies=2)
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
         """Fine along lines 2 mm behind each crease, on the side away from the clamp."""

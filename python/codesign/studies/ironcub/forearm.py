@@ -27,7 +27,7 @@ from codesign.geometry.shape import (
     stepped_hole,
     union,
 )
-from codesign.parts.load_case import StressSettings, clamp, native_case
+from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, clamp, load_cases, native_case
 from codesign.parts.part import Part, parameter
 from codesign.units import MILLIMETRE
 
@@ -235,20 +235,17 @@ class ForearmJetSupport(Part):
         """
         if settings.load not in ("uniform", "thrust_line"):
             raise GeometryError(f"{self.name}: load = {settings.load!r}: there are uniform and thrust_line")
-        (load,) = settings.loads
-        traction = _core.fem.AffineTraction(
-            _core.fem.Selection(faces=[load.face]),
-            load.along((1.0, 0.0, 0.0)),
-            self.turbine_axis if settings.load == "thrust_line" else self.seat_centroid,
-            np.zeros(3),
-            None,
-        )
+        point = self.turbine_axis if settings.load == "thrust_line" else self.seat_centroid
+
+        def traction(load: PressedFace | PushedFace) -> fem.Load:
+            return fem.AffineTraction(load.face, load.along((1.0, 0.0, 0.0)), point)
+
         return native_case(
             settings,
             self.fem_surface(settings.geometry, settings.segments),
             self._size_field(settings),
             [clamp(*settings.supports)],
-            [traction],
+            load_cases(settings, traction),
             facet_angle_deg=20.0,
         )
 
