@@ -34,7 +34,7 @@ def solve(case: _core.PartCase, mesh: fem.TetMesh, solver: str) -> tuple[float, 
     settings = case.settings
     settings.solver = getattr(_core.fem.LinearSolver, solver)
     start = time.process_time()
-    result = _core.fem.StaticSystem(mesh, case.material, case.supports, settings).solve(case.loads)
+    result = _core.fem.StaticSystem(mesh, case.material, case.supports, settings).solve(case.cases[0].loads)
     return time.process_time() - start, result
 
 

@@ -67,7 +67,7 @@ def write_deck(path: Path, mesh: fem.TetMesh, case: Any, procedure: list[str], o
             if support.fixed[axis]
         }
     )
-    force = native.load_vector(mesh, case.material, case.loads).reshape(-1, 3)
+    force = native.load_vector(mesh, case.material, case.cases[0].loads).reshape(-1, 3)
     lines = ["*NODE, NSET=ALL"]
     lines += [f"{i + 1},{x:.13e},{y:.13e},{z:.13e}" for i, (x, y, z) in enumerate(np.asarray(mesh.nodes).tolist())]
     lines.append("*ELEMENT, TYPE=C3D10, ELSET=PART")
@@ -115,7 +115,7 @@ def calculix(mesh: fem.TetMesh, case: Any) -> Solution:
 def ours(mesh: fem.TetMesh, case: Any) -> tuple[Solution, _core.fem.StaticResult]:
     """The same with this project's solver."""
     start = cpu_seconds()
-    result = native.StaticSystem(mesh, case.material, case.supports, case.settings).solve(case.loads)
+    result = native.StaticSystem(mesh, case.material, case.supports, case.settings).solve(case.cases[0].loads)
     return Solution(np.array(result.displacement), np.array(result.stress), cpu_seconds() - start), result
 
 
@@ -123,7 +123,9 @@ def nodal_peak(mesh: fem.TetMesh, case: Any, solution: Solution) -> float:
     """Largest von Mises stress [MPa] of the nodes outside the exclusion zone."""
     corners, points = mesh.boundary[:, :3], np.asarray(mesh.nodes)
     clamped = {t for s in case.supports if not s.symmetry for t in native.selected_triangles(mesh, s.where)}
-    loaded = {t for load in case.loads if load.region is None for t in native.selected_triangles(mesh, load.where)}
+    loaded = {
+        t for load in case.cases[0].loads if load.region is None for t in native.selected_triangles(mesh, load.where)
+    }
     weights = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8
     near = [np.einsum("wk,tkd->twd", weights, points[corners[sorted(clamped)]]).reshape(-1, 3)]
     if loaded:

@@ -12,6 +12,7 @@ from . import fem
 
 __all__: list[str] = [
     "DesignResult",
+    "LoadCase",
     "PartAnalysis",
     "PartCase",
     "analyse_part",
@@ -22,9 +23,30 @@ __all__: list[str] = [
     "linked_libraries",
 ]
 
+class LoadCase:
+    """
+    Loads that act together.
+    """
+    def __init__(
+        self,
+        name: str,
+        loads: collections.abc.Sequence[
+            fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce
+        ],
+        least_safety_factor: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    ) -> None: ...
+    @property
+    def least_safety_factor(self) -> float: ...
+    @property
+    def loads(
+        self,
+    ) -> list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]: ...
+    @property
+    def name(self) -> str: ...
+
 class PartCase:
     """
-    One part and its load case; supports and loads name surface faces.
+    One part and its load cases; supports and loads name surface faces.
     """
 
     size: fem.SizeField
@@ -35,9 +57,7 @@ class PartCase:
         size: fem.SizeField,
         material: fem.Material,
         supports: collections.abc.Sequence[fem.Support],
-        loads: collections.abc.Sequence[
-            fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce
-        ],
+        cases: collections.abc.Sequence[LoadCase],
         settings: fem.StaticSettings = ...,
         facet_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 25.0,
         tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.05,
@@ -51,9 +71,7 @@ class PartCase:
     @buckling.setter
     def buckling(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     @property
-    def loads(
-        self,
-    ) -> list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]: ...
+    def cases(self) -> list[LoadCase]: ...
     @property
     def material(self) -> fem.Material: ...
     @property
@@ -94,6 +112,8 @@ class PartAnalysis:
         (buckling,) of the load, ascending, of the whole part; inf where there is none
         """
     @property
+    def case_names(self) -> list[str]: ...
+    @property
     def change(self) -> float:
         """
         of the peak stress by the last refinement, relative
@@ -109,13 +129,26 @@ class PartAnalysis:
         (modes,) Hz, ascending, of the whole part
         """
     @property
+    def governing(self) -> int:
+        """
+        the case of the smallest safety factor over what it asks for
+        """
+    @property
     def mesh(self) -> fem.TetMesh: ...
     @property
     def mesh_seconds(self) -> float: ...
     @property
     def refinements(self) -> int: ...
     @property
-    def result(self) -> fem.StaticResult: ...
+    def result(self) -> fem.StaticResult:
+        """
+        of the governing case
+        """
+    @property
+    def results(self) -> list[fem.StaticResult]:
+        """
+        StaticResult of every load case
+        """
     @property
     def size(self) -> fem.SizeField:
         """

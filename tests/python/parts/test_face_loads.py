@@ -67,10 +67,10 @@ def test_a_bore_is_loaded_by_a_vector(tmp_path):
 @pytest.mark.parametrize(
     ("load", "message"),
     [
-        ('{ face = "seat" }', "either pressing_n or force_n"),
-        ('{ face = "seat", pressing_n = 250.0, force_n = [0.0, 0.0, 1.0] }', "either pressing_n or force_n"),
-        ('{ face = "seat", pressing_n = 0.0 }', "force of a load is zero"),
-        ('{ face = "seat", force_n = [0.0, 0.0, 0.0] }', "force of a load is zero"),
+        ('{ face = "seat" }', "exactly one of pressing_n, force_n"),
+        ('{ face = "seat", pressing_n = 250.0, force_n = [0.0, 0.0, 1.0] }', "exactly one of pressing_n, force_n"),
+        ('{ face = "seat", pressing_n = 0.0 }', "of a load is zero"),
+        ('{ face = "seat", force_n = [0.0, 0.0, 0.0] }', "of a load is zero"),
     ],
 )
 def test_a_load_has_one_force(tmp_path, load, message):

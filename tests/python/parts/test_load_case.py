@@ -11,7 +11,7 @@ from codesign.chain.study import load_study
 from codesign.geometry.profile import Path, Resolution, circle
 from codesign.geometry.shape import Extrusion, Shape
 from codesign.geometry.solid import build_solid
-from codesign.parts.load_case import PressedFace, StressSettings, confirm, default_case, part_case
+from codesign.parts.load_case import CaseSettings, PressedFace, StressSettings, confirm, default_case, part_case
 from codesign.parts.part import Part, parameter
 from codesign.parts.surface import surface_mesh
 from codesign.problem.evaluation import Evaluation
@@ -46,7 +46,7 @@ class HoledStrip(Part):
 SETTINGS = StressSettings(
     fem.Material("ergal", 71.7e9, 0.3, 2810.0, 462e6),
     supports=["mount"],
-    loads=[PressedFace("pulled", -1000.0)],
+    cases=[CaseSettings("pull", (PressedFace("pulled", -1000.0),))],
     exclusion_distance=5e-3,
 )
 

@@ -19,11 +19,12 @@ from codesign.chain.study import Study
 from codesign.errors import StudyError
 from codesign.robot.description import RobotDescription
 from codesign.study import new_study
-from codesign.study.config import StudyConfig
+from codesign.study.config import LOAD_KINDS, StudyConfig
 from codesign.study.loading import study_from
 
 Place = tuple[str | int, ...]
-EITHER = ("pressing_n", "force_n")  # of a load: one of the two
+# Of a load: one kind; of a part: one load case or several.
+EITHER = (*LOAD_KINDS, "face", "point_mm", "moment_n_m", "loads", "cases")
 NAN, INFINITY = math.nan, math.inf
 WHOLE = """
 [[parts]]
@@ -114,7 +115,14 @@ def complete(raw: dict[str, Any]) -> None:
     pose = {"xyz_mm": [0.0, 0.0, 0.0], "rpy_deg": [0.0, 0.0, 0.0]}
     place |= {"link_T_part": copy.deepcopy(pose), "mirror": "y"}
     place["joints"]["front_roll"]["interface_T_child"] = pose
-    raw["parts"][0]["loads"].append({"face": "seat", "force_n": [0.0, 0.0, -10.0]})
+    loads = [
+        *raw["parts"][0].pop("loads"),
+        {"face": "seat", "force_n": [0.0, 0.0, -9.0], "point_mm": [1.0, 0.0, 0.0], "moment_n_m": [1.0, 0.0, 0.0]},
+        {"face": "seat", "pressure_mpa": 1.0},
+        {"face": "seat", "traction_mpa": [0.0, 0.0, -1.0]},
+        {"acceleration_m_s2": [0.0, 0.0, -9.81]},
+    ]
+    raw["parts"][0]["cases"] = [{"name": "thrust", "loads": loads, "safety_factor_min": 5.0}]
     raw["fem"] |= {"load": "uniform", "support": "published", "exclusion_distance_mm": 3.0}
     raw["flight"] |= {"jet_model": "turbine", "duration_s": 0.08}
     raw["flight"]["initial_state"] |= {"base_rpy_deg": [0.0, 0.0, 0.0], "free_fall_first_step": True}
@@ -248,7 +256,7 @@ def sensible(value: Any) -> bool:
     ("place", "near"),
     [
         (("parts", 0, "supports", 0), "mount"),
-        (("parts", 0, "loads", 0, "face"), "seat"),
+        (("parts", 0, "cases", 0, "loads", 0, "face"), "seat"),
         (("parts", 0, "material"), "ergal"),
         (("parts", 0, "parameters", "reach"), "reach"),
         (("parts", 0, "placements", 0, "link"), "front_strut"),
