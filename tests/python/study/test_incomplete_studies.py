@@ -11,6 +11,8 @@ from codesign.chain.flight import flight_settings, joint_names
 from codesign.chain.fly import fly_robot
 from codesign.chain.study import Study, load_study
 from codesign.cli import main
+from codesign.cli.commands.design import fly
+from codesign.cli.commands.study import check
 from codesign.errors import ExecutionError
 from codesign.report.compute import history
 from codesign.report.page.encode import _flight as page_of_flight
@@ -41,7 +43,7 @@ def without_ground(folder) -> Study:
 
 def test_a_robot_without_ground_contacts_flies_on_the_command_line(tmp_path, capsys):
     study = without_ground(tmp_path / "study")
-    assert main.fly(study.path.parent / "robot.urdf", study=str(study.path)) == 0
+    assert fly(study.path.parent / "robot.urdf", study=str(study.path)) == 0
     rows = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
     assert rows["min_clearance"].strip() == "-"
     assert float(rows["max_thrust"]) > 0.0
@@ -116,18 +118,18 @@ def test_an_edited_study_is_loaded_anew(tmp_path):
 
 def test_check_tells_all_problems_at_once_or_what_varies(tmp_path, capsys):
     file = edited(tmp_path / "study").path
-    assert main.check(str(file)) == 0
+    assert check(str(file)) == 0
     told = capsys.readouterr().out
     assert "reach" in told and "120 … 320 by 10 mm" in told and "294 designs" in told and "momentum" in told
     sound = file.read_text()
     file.write_text(
         sound.replace("population = 16", "poulation = 16").replace("max_thrust_n = 250.0", 'max_thrust_n = "a"')
     )
-    assert main.check(str(file)) == 1
+    assert check(str(file)) == 1
     told = capsys.readouterr().out
     assert "unknown key 'poulation'; did you mean 'population'?" in told and "flight.jets.max_thrust_n: 'a'" in told
     assert len(told.splitlines()) == 2
     file.write_text(sound.replace('"mount"]', '"mont"]').replace('"skid_front"', '"skid_frond"'))
-    assert main.check(str(file)) == 1
+    assert check(str(file)) == 1
     told = capsys.readouterr().out
     assert "did you mean 'mount'" in told and "did you mean 'skid_front'" in told
