@@ -12,7 +12,8 @@ import numpy as np
 from codesign import dynamics as dyn
 from codesign.errors import CodesignError, StudyError
 from codesign.names import nearest
-from codesign.study.config import DisturbancesConfig, FlightConfig, StudyConfig, TrajectoryConfig
+from codesign.study.config import StudyConfig
+from codesign.study.flight_config import DisturbancesConfig, FlightConfig, TrajectoryConfig
 from codesign.transforms import pose
 from codesign.units import DEGREE
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import PartWords
 from codesign.report.words import listed, plural
-from codesign.study.config import JointGroupConfig, LoadCaseConfig, LoadConfig, PartConfig, StudyConfig
+from codesign.study.config import LoadCaseConfig, LoadConfig, PartConfig, StudyConfig
+from codesign.study.flight_config import JointGroupConfig
 
 TIMES = {0.5: "half", 1.0: "once", 2.0: "twice"}
 

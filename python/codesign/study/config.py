@@ -4,26 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from msgspec import Meta, Struct, field
+from msgspec import Meta, field
 
 from codesign.robot.assembly import PartPlacement
 from codesign.robot.clearance import InterferenceSettings
+from codesign.study.flight_config import FlightConfig, TrajectoryConfig
+from codesign.study.sections import Name, NonNegative, Positive, Probability, Section, Seed, Vector3
 
 ONLY_CASE = "load"  # name of the load case of a part that has one
-
-Positive = Annotated[float, Meta(gt=0)]
-NonNegative = Annotated[float, Meta(ge=0)]
-Probability = Annotated[float, Meta(ge=0, le=1)]
-Name = Annotated[str, Meta(min_length=1)]
-Deviation = Annotated[float, Meta(ge=0, le=0.15)]  # relative; random numbers stay within six deviations
-Seed = Annotated[int, Meta(ge=0, le=2**32 - 1)]
-Sign = Annotated[float, Meta(ge=-1, le=1)]
-Vector3 = tuple[float, float, float]
-Range = tuple[float, float]
-
-
-class Section(Struct, frozen=True, forbid_unknown_fields=True):
-    """Base of all sections: immutable, unknown keys are errors."""
 
 
 class VariableConfig(Section, frozen=True, kw_only=True):
@@ -146,189 +134,6 @@ class FemConfig(Section, frozen=True, kw_only=True):
     exclusion: Literal["local", "published"] = "local"
     exclusion_distance_mm: NonNegative | None = None
     tolerance: Positive = 0.05
-
-
-class InitialStateConfig(Section, frozen=True, kw_only=True):
-    """State at the start of a flight."""
-
-    base_position_m: Vector3
-    base_rpy_deg: Vector3 = (0.0, 0.0, 0.0)
-    thrust_n: NonNegative | list[NonNegative]
-    free_fall_first_step: bool = True
-
-
-class JointGroupConfig(Section, frozen=True, kw_only=True):
-    """Joints that share controller settings; one value of each list a joint."""
-
-    name: Name
-    joints: list[str]
-    initial_rad: list[float]
-    ranges_deg: list[Range]
-    range_scale: Positive = 1.0
-    posture_gain_hz: NonNegative
-    velocity_weight: NonNegative = 0.0
-
-
-class JetsConfig(Section, frozen=True, kw_only=True):
-    """What pushes the robot: jets, propellers. Numbers are of all, or a list with one for each.
-
-    frames: where they sit. axes: unit vectors in the frames that the thrusts push along; empty: minus z of each.
-    reaction_n_m_per_n: moment about the axis per newton of thrust, the drag torque of a propeller; positive where it
-    turns the robot counter-clockwise about the axis. symmetric_pairs: frames whose thrust rates should agree. lag_s:
-    time constant of the jet model "lag".
-    """
-
-    frames: list[str]
-    max_thrust_n: Positive | list[Positive]
-    max_thrust_rate_n_s: Positive | list[Positive]
-    min_thrust_n: NonNegative | list[NonNegative] = 0.0
-    axes: list[Vector3] = []
-    reaction_n_m_per_n: float | list[float] = 0.0
-    lag_s: Positive | list[Positive] = 0.05
-    symmetric_pairs: list[tuple[str, str]] = []
-
-
-class CommandSpeedsConfig(Section, frozen=True, kw_only=True):
-    """How fast a command of sign 1 moves the reference."""
-
-    forward_m_s: Positive
-    vertical_m_s: Positive
-    lateral_m_s: Positive
-    roll_deg_s: Positive
-    pitch_deg_s: Positive
-    yaw_deg_s: Positive
-
-
-class ReferencesConfig(Section, frozen=True, kw_only=True):
-    """From commands to smooth references."""
-
-    roll_range_deg: Range
-    pitch_range_deg: Range
-    position_smoothing_s: Positive
-    jerk_smoothing_s: Positive
-    rotation_gain_hz: Positive
-    angular_velocity_smoothing_s: Positive
-
-
-class GainsConfig(Section, frozen=True, kw_only=True):
-    """Controller gains; docs/flight.md gives the control law."""
-
-    linear_proportional: NonNegative
-    linear_derivative: NonNegative
-    linear_momentum: Positive
-    attitude_proportional: NonNegative
-    attitude_derivative: NonNegative
-    joint_integral: NonNegative
-    joint_proportional: NonNegative
-
-
-class WeightsConfig(Section, frozen=True, kw_only=True):
-    """Weights of the momentum and the torque QP."""
-
-    momentum: NonNegative
-    constant_inertia: NonNegative
-    posture: NonNegative
-    joint_velocity: NonNegative
-    thrust_rate: NonNegative
-    thrust_symmetry: NonNegative
-    regularization: Positive
-    torque: Positive
-
-
-class LimitsConfig(Section, frozen=True, kw_only=True):
-    """Bounds of both QPs."""
-
-    joint_speed_deg_s: Positive
-    joint_speed_slope_per_rad: Positive
-    thrust_rate_slope_per_n: Positive
-    torque_n_m: Positive
-    torque_rate_n_m_s: Positive
-
-
-class FailureConfig(Section, frozen=True, kw_only=True):
-    """A flight beyond these is lost."""
-
-    com_error_m: Positive
-    attitude_error_deg: Positive
-    joint_speed_rad_s: Positive
-
-
-class GroundConfig(Section, frozen=True, kw_only=True):
-    """Points of the robot whose height over the ground is watched."""
-
-    height_m: float = 0.0
-    frames: list[str] = []
-    points_m: list[Vector3] = []
-
-
-class TurbineConfig(Section, frozen=True, kw_only=True):
-    """Coefficients of the second-order thrust model and of its throttle controller."""
-
-    K_T: float
-    K_TT: float
-    K_D: float
-    K_DD: float
-    K_TD: float
-    B_U: float
-    B_T: float
-    B_D: float
-    B_UU: float
-    c: float
-    throttle_gain: Positive
-    max_throttle_percent: Positive
-
-
-class FlightConfig(Section, frozen=True, kw_only=True):
-    """Plant, jets, controller and reference generator."""
-
-    trajectory: str
-    step_s: Positive
-    duration_s: Positive
-    jet_model: Literal["integrator", "lag", "turbine"] = "integrator"
-    initial_state: InitialStateConfig
-    joint_groups: list[JointGroupConfig] = []
-    jets: JetsConfig
-    command_speeds: CommandSpeedsConfig
-    references: ReferencesConfig
-    gains: GainsConfig
-    weights: WeightsConfig
-    limits: LimitsConfig
-    failure: FailureConfig
-    ground: GroundConfig = GroundConfig()
-    turbine: TurbineConfig | None = None
-
-
-class WindowConfig(Section, frozen=True, kw_only=True):
-    """A command that acts at samples strictly between two times: signs of the command speeds."""
-
-    from_s: NonNegative
-    to_s: Positive
-    forward: Sign = 0.0
-    left: Sign = 0.0
-    up: Sign = 0.0
-    roll: Sign = 0.0
-    pitch: Sign = 0.0
-    yaw: Sign = 0.0
-
-
-class DisturbancesConfig(Section, frozen=True, kw_only=True):
-    """What the flight has and the controller does not know; deviations are drawn from the seed."""
-
-    wind_n: Vector3 = (0.0, 0.0, 0.0)
-    gust_deviation_n: tuple[NonNegative, NonNegative, NonNegative] = (0.0, 0.0, 0.0)
-    gust_time_s: Positive = 1.0
-    mass_scale: Positive = 1.0
-    mass_deviation: Deviation = 0.0
-    thrust_deviation: Deviation = 0.0
-    seed: Seed = 0
-
-
-class TrajectoryConfig(Section, frozen=True, kw_only=True):
-    """Piloted segments, hover outside of them; calm unless disturbed."""
-
-    windows: list[WindowConfig]
-    label: str = ""
-    disturbances: DisturbancesConfig = DisturbancesConfig()
 
 
 class ObjectivesConfig(Section, frozen=True, kw_only=True):

@@ -11,7 +11,8 @@ from codesign.errors import UrdfError
 from codesign.robot.clearance import InterferenceSettings, link_pieces
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, repeated, unknown
-from codesign.study.config import FlightConfig, StudyConfig
+from codesign.study.config import StudyConfig
+from codesign.study.flight_config import FlightConfig
 
 MOST_SAMPLES = 1_000_000  # of a flight
 UNIT_TOLERANCE = 1e-6  # of the length of an axis

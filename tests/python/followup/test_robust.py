@@ -12,7 +12,7 @@ from codesign.followup.derived import coarse, load_coarse
 from codesign.followup.robust import aggregate, load_robust, robust
 from codesign.problem.evaluation import Evaluation
 from codesign.search.optimization import optimize, sweep
-from codesign.study.config import DisturbancesConfig
+from codesign.study.flight_config import DisturbancesConfig
 from fake_study import FakeStudy, study
 
 
