@@ -29,12 +29,17 @@ def load_file(path: Path, scale: float, repair: bool) -> tuple[fem.SurfaceMesh, 
             repaired, report = fem.repair_surface(surface)
         except MeshError as error:
             raise MeshError(f"{path}: {error}") from None
-        return fem.label_by_angle(repaired), report
+        return _faces(repaired), report
     try:
         fem.check_surface(surface)
     except MeshError as error:
         raise MeshError(f"{path}: {error}; {_remedy(surface)}") from None
-    return fem.label_by_angle(surface), None
+    return _faces(surface), None
+
+
+def _faces(surface: fem.SurfaceMesh) -> fem.SurfaceMesh:
+    """The surface with the faces of its file, or those that its sharp edges make."""
+    return surface if any(surface.face_names) else fem.label_by_angle(surface)
 
 
 def _read(path: Path, scale: float) -> fem.SurfaceMesh:
@@ -46,7 +51,7 @@ def _read(path: Path, scale: float) -> fem.SurfaceMesh:
     if is_step:
         from codesign.fem.step import load_step
 
-        return load_step(path).surface
+        return load_step(path).by_face()
     return fem.read_stl(path, scale)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from codesign import fem
 from codesign.errors import CodesignError
-from codesign.fem.selections import Box, Facing, Near, Place
+from codesign.fem.selections import Box, Facing, Holes, NamedFace, Near, Place
 from codesign.units import GIGA, MEGA
 
 # Typical catalogue values; ergal (aluminium 7075-T6) as in the shipped study.
@@ -25,7 +25,10 @@ class StressInputError(CodesignError, ValueError):
 
 
 def parse_selection(text: str, scale: float) -> Place:
-    """`near:x,y,z`, `box:x0,y0,z0,x1,y1,z1` or `normal:nx,ny,nz[:degrees]`; coordinates in units of `scale` metres.
+    """A place on the part; coordinates and radii in units of `scale` metres.
+
+    `near:x,y,z`, `box:x0,y0,z0,x1,y1,z1`, `normal:nx,ny,nz[:degrees]`, `face:NAME` (of a STEP file, or its number), or
+    `hole:r=RADIUS` (all round holes of that radius).
 
     Raises: StressInputError.
     """
@@ -42,8 +45,17 @@ def parse_selection(text: str, scale: float) -> Place:
         if not (x or y or z):
             raise StressInputError(f"selection {text!r}: the direction is zero")
         return Facing((x, y, z), _numbers(angle, 1, text)[0] if angle else 1.0)
+    if kind == "face" and rest.strip():
+        name = rest.strip()
+        return NamedFace(f"face {name}" if name.isdecimal() else name)
+    if kind == "hole" and rest.strip().startswith("r="):
+        (radius,) = _numbers(rest.strip().removeprefix("r="), 1, text)
+        if radius <= 0.0:
+            raise StressInputError(f"selection {text!r}: the radius must be positive")
+        return Holes(radius * scale)
     raise StressInputError(
-        f"selection {text!r}: expected near:x,y,z, box:x0,y0,z0,x1,y1,z1 or normal:nx,ny,nz[:degrees]"
+        f"selection {text!r}: expected near:x,y,z, box:x0,y0,z0,x1,y1,z1, normal:nx,ny,nz[:degrees], face:NAME or "
+        "hole:r=RADIUS"
     )
 
 

@@ -10,8 +10,14 @@ from numpy.typing import NDArray
 
 from codesign import fem
 from codesign._core import fem as _core
+from codesign.errors import MeshError, ModelError
 from codesign.fem.cut import cut_by_box
+from codesign.fem.holes import holes
 from codesign.fem.model import MAX_BEND_DEG
+from codesign.names import nearest
+from codesign.units import MILLIMETRE
+
+SAME_RADIUS = 0.01  # relative
 
 Triangles = NDArray[np.bool_]  # (m,) of the surface: selected or not
 
@@ -72,7 +78,49 @@ class Facing:
         return fem.faces_with_normal(self.normal, self.angle)
 
 
-Place = Near | Box | Facing
+@dataclass(frozen=True)
+class NamedFace:
+    """A face by its name in the file, or `face N` by its number."""
+
+    name: str
+
+    def triangles(self, surface: fem.SurfaceMesh) -> Triangles:
+        """Those of the surface. Raises: ModelError: there is no such face."""
+        names = list(surface.face_names)
+        if self.name not in names:
+            known = [name for name in names if name]
+            raise ModelError(f"no face {self.name!r}; {nearest(self.name, known)}")
+        chosen: Triangles = np.asarray(surface.face) == names.index(self.name)
+        return chosen
+
+    def on_mesh(self) -> fem.Selection:
+        """Sides of elements of a mesh of the surface with its own faces."""
+        return fem.select_names(self.name)
+
+
+@dataclass(frozen=True)
+class Holes:
+    """The walls of all round holes of a radius [m]."""
+
+    radius: float
+
+    def triangles(self, surface: fem.SurfaceMesh) -> Triangles:
+        """Those of the surface. Raises: ModelError: there is no such hole."""
+        found = holes(surface)
+        chosen = [i for i, hole in found.items() if abs(hole.radius - self.radius) <= SAME_RADIUS * self.radius]
+        if not chosen:
+            radii = sorted({f"{hole.radius / MILLIMETRE:.4g}" for hole in found.values()})
+            known = f"the holes have radii of {', '.join(radii)} mm" if radii else "there is no round hole"
+            raise ModelError(f"no hole of radius {self.radius / MILLIMETRE:g} mm; {known}")
+        facets: Triangles = np.isin(np.asarray(surface.face), chosen)
+        return facets
+
+    def on_mesh(self) -> fem.Selection:
+        """Sides of elements whose middle lies on the walls: known only from the surface."""
+        raise MeshError("the borders of the holes are too ragged for this edge length: choose a smaller one")
+
+
+Place = Near | Box | Facing | NamedFace | Holes
 
 
 @dataclass(frozen=True)

@@ -82,6 +82,13 @@ class StepPart:
     faces: tuple[StepFace, ...]
     triangle_face: NDArray[np.int64]
 
+    def by_face(self) -> SurfaceMesh:
+        """The surface with every face of the solid by name: its own, or `face N` by number."""
+        names = [face.name or f"face {face.number}" for face in self.faces]
+        labels = list(dict.fromkeys(names))
+        index = np.array([labels.index(name) for name in names])
+        return SurfaceMesh(self.surface.points, self.surface.triangles, index[self.triangle_face].tolist(), labels)
+
 
 def load_step(path: str | os.PathLike[str], *, solid: str | None = None, chord: float = CHORD) -> StepPart:
     """One solid of a STEP file as a closed surface; lengths in metres whatever the file's unit.
