@@ -53,7 +53,8 @@ def stress(
     """Safety factor of any closed surface; exit code 1 if the material yields.
 
     SEL is near:x,y,z (the smooth face nearest to a point), box:x0,y0,z0,x1,y1,z1 (all faces inside) or
-    normal:nx,ny,nz[:degrees] (faces that look there), in the file's units.
+    normal:nx,ny,nz[:degrees] (faces that look there), face:NAME (of a STEP file, or its number), hole:r=RADIUS (all
+    round holes of that radius); in the file's units.
     """
     from codesign.cli.stress import stress_document
     from codesign.cli.stress_options import find_material
