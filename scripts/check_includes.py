@@ -25,6 +25,7 @@ RANK = {folder: rank for rank, folders in enumerate(LAYERS) for folder in folder
 LIBRARIES = {
     r"CGAL/": ("fem/meshing", "fem/smoothing", "fem/surface"),
     r"(cholmod|SuiteSparse\w*)\.h": ("fem/la",),
+    r"expat\.h": ("dynamics",),
     r"urdf_(model|parser)/": ("dynamics",),
     r"pybind11/": ("bindings",),
 }

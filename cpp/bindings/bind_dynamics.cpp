@@ -300,6 +300,22 @@ void bind_model(py::module_& m) {
       R"(Refuses a mass [kg] with an inertia (3, 3) [kg m2] about the center of mass that no body can have.
 
 Raises: UrdfError naming the link and its principal moments.)");
+  m.def(
+      "check_urdf",
+      [](const py::bytes& content, bool is_utf8) {
+        using namespace dynamics;
+        return reduce_urdf(std::string_view(content),
+                           is_utf8 ? XmlEncoding::kUtf8 : XmlEncoding::kDeclared,
+                           UrdfScope::kShapes)
+            .root;
+      },
+      py::arg("content"), py::arg("is_utf8") = false,
+      R"(Name of the root link of a URDF whose links, joints, inertias and shapes can be used.
+
+Args:
+    content: the text as bytes.
+    is_utf8: read it as UTF-8, whatever byte order mark and XML declaration say.
+Raises: UrdfError naming line and element.)");
   m.def("load_urdf", &load_urdf, py::arg("text_or_path"), py::arg("joints") = py::none(),
         py::arg("as_published") = false, py::arg("fixed_base") = false,
         R"(The robot in a URDF, given as text or as the path of a file.

@@ -334,8 +334,8 @@ std::string read_file(const std::string& path) {
                   " cannot be read as a file, and is no URDF text, which starts with '<'");
 }
 
-Model load_text(const std::string& text, const UrdfOptions& options) {
-  const UrdfText reduced = reduce_urdf(text);
+Model load_text(const std::string& text, XmlEncoding encoding, const UrdfOptions& options) {
+  const UrdfText reduced = reduce_urdf(text, encoding);
   const urdf::ModelInterfaceSharedPtr urdf = parse(reduced.xml);
   struct Release {
     const urdf::ModelInterfaceSharedPtr& urdf;
@@ -351,10 +351,10 @@ void check_inertia(const RigidInertia& body, const std::string& link) {
 }
 
 Model load_urdf(const std::string& text_or_path, const UrdfOptions& options) {
-  if (is_text(text_or_path)) return load_text(text_or_path, options);
+  if (is_text(text_or_path)) return load_text(text_or_path, XmlEncoding::kUtf8, options);
   const std::string text = read_file(text_or_path);
   try {
-    return load_text(text, options);
+    return load_text(text, XmlEncoding::kDeclared, options);
   } catch (const UnknownNameError& e) {
     throw UnknownNameError(text_or_path + ": " + e.what());
   } catch (const UrdfError& e) {

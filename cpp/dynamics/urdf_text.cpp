@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "dynamics/xml_reader.hpp"
+#include "dynamics/urdf_tree.hpp"
 #include "errors.hpp"
 
 namespace codesign::dynamics {
@@ -20,37 +20,68 @@ constexpr std::size_t kMaxNameLength = 1000;
 constexpr double kLargestNumber = 1e9;  // of a length, an angle, a mass, an inertia, in SI units
 constexpr double kAnyNumber = std::numeric_limits<double>::max();
 
+using Names = std::initializer_list<std::string_view>;
+
+// The numbers of an attribute.
 struct NumberRule {
   std::string_view element, attribute;
-  int count;
-  double largest;
+  int count = 1;
+  double largest = kLargestNumber;
+  bool required = false;
+  bool positive = false;
+  bool one_will_do = false;
 };
-constexpr std::array kNumbers = {NumberRule{"origin", "xyz", 3, kLargestNumber},
-                                 NumberRule{"origin", "rpy", 3, kLargestNumber},
-                                 NumberRule{"axis", "xyz", 3, kLargestNumber},
-                                 NumberRule{"mass", "value", 1, kLargestNumber},
-                                 NumberRule{"inertia", "ixx", 1, kLargestNumber},
-                                 NumberRule{"inertia", "ixy", 1, kLargestNumber},
-                                 NumberRule{"inertia", "ixz", 1, kLargestNumber},
-                                 NumberRule{"inertia", "iyy", 1, kLargestNumber},
-                                 NumberRule{"inertia", "iyz", 1, kLargestNumber},
-                                 NumberRule{"inertia", "izz", 1, kLargestNumber},
-                                 NumberRule{"limit", "lower", 1, kAnyNumber},
-                                 NumberRule{"limit", "upper", 1, kAnyNumber},
-                                 NumberRule{"limit", "velocity", 1, kAnyNumber},
-                                 NumberRule{"limit", "effort", 1, kAnyNumber},
-                                 NumberRule{"mimic", "multiplier", 1, kAnyNumber},
-                                 NumberRule{"mimic", "offset", 1, kAnyNumber}};
+constexpr std::array kNumbers = {
+    NumberRule{"origin", "xyz", 3},
+    NumberRule{"origin", "rpy", 3},
+    NumberRule{"axis", "xyz", 3},
+    NumberRule{.element = "mass", .attribute = "value", .required = true},
+    NumberRule{.element = "inertia", .attribute = "ixx", .required = true},
+    NumberRule{.element = "inertia", .attribute = "ixy", .required = true},
+    NumberRule{.element = "inertia", .attribute = "ixz", .required = true},
+    NumberRule{.element = "inertia", .attribute = "iyy", .required = true},
+    NumberRule{.element = "inertia", .attribute = "iyz", .required = true},
+    NumberRule{.element = "inertia", .attribute = "izz", .required = true},
+    NumberRule{.element = "limit", .attribute = "lower", .largest = kAnyNumber},
+    NumberRule{.element = "limit", .attribute = "upper", .largest = kAnyNumber},
+    NumberRule{
+        .element = "limit", .attribute = "velocity", .largest = kAnyNumber, .required = true},
+    NumberRule{.element = "limit", .attribute = "effort", .largest = kAnyNumber, .required = true},
+    NumberRule{.element = "mimic", .attribute = "multiplier", .largest = kAnyNumber},
+    NumberRule{.element = "mimic", .attribute = "offset", .largest = kAnyNumber},
+    NumberRule{
+        .element = "box", .attribute = "size", .count = 3, .required = true, .positive = true},
+    NumberRule{.element = "cylinder", .attribute = "radius", .required = true, .positive = true},
+    NumberRule{.element = "cylinder", .attribute = "length", .required = true, .positive = true},
+    NumberRule{.element = "sphere", .attribute = "radius", .required = true, .positive = true},
+    NumberRule{.element = "mesh", .attribute = "scale", .count = 3, .one_will_do = true},
+    NumberRule{.element = "color", .attribute = "rgba", .count = 4}};
 
-bool is_kept(std::string_view parent, std::string_view element) {
-  const auto one_of = [&](std::initializer_list<std::string_view> names) {
-    return std::find(names.begin(), names.end(), element) != names.end();
-  };
-  if (parent == "robot") return one_of({"link", "joint"});
-  if (parent == "link") return one_of({"inertial"});
-  if (parent == "inertial") return one_of({"origin", "mass", "inertia"});
-  if (parent == "joint") return one_of({"origin", "parent", "child", "axis", "limit", "mimic"});
-  return false;
+constexpr std::array<std::string_view, 6> kJointTypes = {"fixed",     "revolute", "continuous",
+                                                         "prismatic", "floating", "planar"};
+
+bool one_of(std::string_view name, Names names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool needs_limits(std::string_view type) { return one_of(type, {"revolute", "prismatic"}); }
+
+bool has_axis(std::string_view type) { return needs_limits(type) || type == "continuous"; }
+
+bool is_shape(std::string_view element) { return one_of(element, {"visual", "collision"}); }
+
+bool is_read(std::string_view parent, std::string_view element, UrdfScope scope) {
+  if (parent == "robot") return one_of(element, {"link", "joint"});
+  if (parent == "link") {
+    return element == "inertial" || (scope == UrdfScope::kShapes && is_shape(element));
+  }
+  if (parent == "inertial") return one_of(element, {"origin", "mass", "inertia"});
+  if (parent == "joint") {
+    return one_of(element, {"origin", "parent", "child", "axis", "limit", "mimic"});
+  }
+  if (is_shape(parent)) return one_of(element, {"origin", "geometry", "material"});
+  if (parent == "geometry") return one_of(element, {"box", "cylinder", "sphere", "mesh"});
+  return parent == "material" && element == "color";
 }
 
 void append_escaped(std::string_view value, std::string& out) {
@@ -74,140 +105,204 @@ void append_escaped(std::string_view value, std::string& out) {
   }
 }
 
-class Reducer {
- public:
-  explicit Reducer(std::string_view text) : reader_(text) {}
+// In every locale the same, and read back exactly.
+std::string text_of(double number) {
+  std::array<char, 32> buffer{};
+  const auto written = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
+  return {buffer.data(), written.ptr};
+}
 
-  UrdfText reduce() {
-    while (reader_.next()) {
-      if (reader_.is_start()) {
-        start();
-      } else {
-        end();
+std::string in_quotes(std::string_view text) {
+  std::string quoted(1, '"');
+  return quoted.append(text.substr(0, 40)).append(1, '"');
+}
+
+class Reducer : public XmlListener {
+ public:
+  explicit Reducer(UrdfScope scope) : scope_(scope) {}
+
+  void start(std::string_view name, const std::vector<XmlAttribute>& attributes) override {
+    const std::string element(name);
+    if (++depth_ == 1) {
+      if (element != "robot") fail("the root element is <" + element + ">, not <robot>");
+      if (find(attributes, "name").empty()) fail("<robot> has no name");
+    } else if (depth_ != open_.size() + 1) {
+      return;  // below an element that nobody reads
+    } else if (!is_read(open_.back().name, element, scope_)) {
+      if (open_.back().name == "geometry") {
+        fail("<" + element + "> is no shape: box, cylinder, sphere or mesh");
       }
+      return;
+    } else if (depth_ == 2) {
+      start_link_or_joint(element, attributes);
+    } else {
+      check_siblings(element);
     }
-    return std::move(result_);
+    const bool written = depth_ == 1 || (open_.back().written && !is_shape(element));
+    open_.push_back({element, written, {}});
+    read_element(element, attributes);
   }
+
+  void end() override {
+    if (depth_-- != open_.size()) return;
+    const Open& element = open_.back();
+    if (element.name == "inertial") require_children({"mass", "inertia"});
+    if (is_shape(element.name)) require_children({"geometry"});
+    if (element.name == "geometry" && element.children.empty()) {
+      fail("its <geometry> is empty: box, cylinder, sphere or mesh");
+    }
+    if (element.name == "joint" && needs_limits(type_) && !element.children.contains("limit")) {
+      fail("a " + type_ + " joint needs limits, <limit> is missing");
+    }
+    if (element.written) result_.xml += "</" + element.name + ">\n";
+    open_.pop_back();
+  }
+
+  UrdfText result() && { return std::move(result_); }
 
  private:
-  void start() {
-    const std::string name(reader_.name());
-    if (reader_.depth() == 1) {
-      if (name != "robot") reader_.fail("the root element is <" + name + ">, not <robot>");
-    } else if (reader_.depth() != static_cast<int>(kept_.size()) + 1 ||
-               !is_kept(kept_.back(), name)) {
-      return;  // nothing below an element that is not kept is kept
-    } else if (kept_.size() == 1) {
-      start_element(name);
-    } else if (!siblings_[kept_.size()].insert(name).second) {
-      fail("has more than one <" + name + ">");
+  struct Open {
+    std::string name;
+    bool written;                    // into the reduced text
+    std::set<std::string> children;  // that were read
+  };
+  using Numbers = std::map<std::string_view, std::vector<double>>;  // by attribute
+
+  static std::string_view find(const std::vector<XmlAttribute>& attributes, std::string_view name) {
+    for (const XmlAttribute& attribute : attributes) {
+      if (attribute.name == name) return attribute.value;
     }
-    kept_.push_back(name);
-    siblings_[kept_.size()].clear();
-    write_start(name);
+    return {};
   }
 
-  void end() {
-    if (reader_.depth() != static_cast<int>(kept_.size())) return;
-    if (kept_.back() == "inertial") {
-      for (const char* part : {"mass", "inertia"}) {
-        if (!siblings_[kept_.size()].contains(part)) {
-          fail(std::string("its <inertial> has no <") + part + ">");
-        }
-      }
-    }
-    result_.xml += "</" + kept_.back() + ">\n";
-    kept_.pop_back();
-  }
-
-  // A <link> or <joint>.
-  void start_element(const std::string& kind) {
-    if (++elements_ > kMaxElements) reader_.fail("more than 5000 links and joints");
-    const auto& attributes = reader_.attributes();
-    const auto found = std::find_if(attributes.begin(), attributes.end(),
-                                    [](const XmlAttribute& a) { return a.name == "name"; });
-    if (found == attributes.end() || found->value.empty()) reader_.fail(kind + " without a name");
-    check_name(found->value);
-    where_ = kind + " \"" + found->value + "\"";
+  void start_link_or_joint(const std::string& kind, const std::vector<XmlAttribute>& attributes) {
+    where_.clear();
+    if (++elements_ > kMaxElements) fail("more than 5000 links and joints");
+    const std::string name(find(attributes, "name"));
+    if (name.empty()) fail(kind + " without a name");
+    check_name(name);
+    where_ = kind + " \"" + name + "\": ";
     if (kind == "link") {
-      result_.links.push_back(found->value);
-    } else {
-      result_.joints.push_back({found->value, {}, {}});
+      result_.links.push_back(name);
+      return;
+    }
+    result_.joints.push_back({name, {}, {}});
+    type_ = find(attributes, "type");
+    if (std::find(kJointTypes.begin(), kJointTypes.end(), type_) == kJointTypes.end()) {
+      std::string types;
+      for (const std::string_view type : kJointTypes) {
+        types.append(types.empty() ? "" : ", ").append(type);
+      }
+      fail((type_.empty() ? "it has no type" : "its type " + in_quotes(type_) + " is unknown") +
+           ": one of " + types);
     }
   }
 
-  void check_name(const std::string& value) {
+  void check_siblings(const std::string& element) {
+    std::set<std::string>& siblings = open_.back().children;
+    if (open_.back().name == "geometry" && !siblings.empty()) fail("<geometry> with two shapes");
+    if (!siblings.insert(element).second && !is_shape(element)) {
+      fail("has more than one <" + element + ">");
+    }
+  }
+
+  void require_children(Names names) const {
+    for (const std::string_view name : names) {
+      if (open_.back().children.contains(std::string(name))) continue;
+      fail("its <" + open_.back().name + "> has no <" + std::string(name) + ">");
+    }
+  }
+
+  void check_name(std::string_view value) const {
     const bool control = std::any_of(value.begin(), value.end(), [](char c) {
       return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
     });
-    if (control || value.size() > kMaxNameLength || !is_utf8(value)) {
-      reader_.fail("a name that is not UTF-8, too long or holds control characters");
+    if (control || value.size() > kMaxNameLength) {
+      fail("a name that is too long or holds control characters");
     }
   }
 
-  // Of <mass> and <inertia>: all their numbers.
-  void check_complete(const std::string& element) {
-    if (element != "mass" && element != "inertia") return;
-    const auto& attributes = reader_.attributes();
+  void read_element(const std::string& element, const std::vector<XmlAttribute>& attributes) {
+    if (element == "mesh" && find(attributes, "filename").empty()) {
+      fail("its <mesh> has no filename");
+    }
+    if (!find(attributes, "quat_xyzw").empty()) {
+      fail("origin quat_xyzw is not supported, use rpy");
+    }
+    Numbers numbers;
     for (const NumberRule& rule : kNumbers) {
-      const bool missing =
-          rule.element == element &&
-          std::none_of(attributes.begin(), attributes.end(),
-                       [&](const XmlAttribute& a) { return a.name == rule.attribute; });
-      if (missing) fail("its <" + element + "> has no " + std::string(rule.attribute));
+      if (rule.element != element) continue;
+      const auto found = std::find_if(attributes.begin(), attributes.end(),
+                                      [&](const auto& a) { return a.name == rule.attribute; });
+      if (found != attributes.end()) {
+        numbers[rule.attribute] = read_numbers(rule, found->value);
+      } else if (rule.required) {
+        fail("its <" + element + "> has no " + std::string(rule.attribute));
+      }
+    }
+    check_joint(element, numbers);
+    if (open_.back().written) write_start(element, attributes, numbers);
+  }
+
+  // Axis and limits of a joint.
+  void check_joint(std::string_view element, const Numbers& numbers) const {
+    if (element == "axis" && has_axis(type_) && numbers.contains("xyz")) {
+      const std::vector<double>& axis = numbers.at("xyz");
+      if (axis == std::vector<double>(3, 0.0)) fail("an axis of length zero");
+    }
+    if (element != "limit" || !needs_limits(type_)) return;
+    const auto value = [&](std::string_view name) {
+      return numbers.contains(name) ? numbers.at(name).front() : 0.0;
+    };
+    if (value("lower") > value("upper")) {
+      fail("its lower limit " + text_of(value("lower")) + " is above its upper limit " +
+           text_of(value("upper")));
     }
   }
 
-  void write_start(const std::string& element) {
-    check_complete(element);
+  void write_start(const std::string& element, const std::vector<XmlAttribute>& attributes,
+                   const Numbers& numbers) {
     result_.xml += "<" + element;
-    for (const XmlAttribute& attribute : reader_.attributes()) {
-      const auto rule = std::find_if(kNumbers.begin(), kNumbers.end(), [&](const NumberRule& r) {
-        return r.element == element && r.attribute == attribute.name;
-      });
-      const bool text = attribute.name == "name" || attribute.name == "type" ||
-                        attribute.name == "link" || attribute.name == "joint";
-      if (rule == kNumbers.end() && !text) {
-        if (attribute.name == "quat_xyzw") fail("origin quat_xyzw is not supported, use rpy");
-        continue;
-      }
-      result_.xml.append(" ").append(attribute.name).append("=\"");
-      if (rule != kNumbers.end()) {
-        append_numbers(*rule, attribute.value);
+    for (const auto& [name, value] : attributes) {
+      const auto found = numbers.find(name);
+      if (found == numbers.end() && !one_of(name, {"name", "type", "link", "joint"})) continue;
+      result_.xml.append(" ").append(name).append("=\"");
+      if (found != numbers.end()) {
+        const char* separator = "";
+        for (const double number : found->second) {
+          result_.xml.append(separator).append(text_of(number));
+          separator = " ";
+        }
       } else {
-        check_name(attribute.value);
-        append_escaped(attribute.value, result_.xml);
-        if (element == "parent" && attribute.name == "link") {
-          result_.joints.back().parent = attribute.value;
-        }
-        if (element == "child" && attribute.name == "link") {
-          result_.joints.back().child = attribute.value;
-        }
+        check_name(value);
+        append_escaped(value, result_.xml);
       }
       result_.xml += '"';
     }
     result_.xml += ">\n";
+    if (element == "parent") result_.joints.back().parent = find(attributes, "link");
+    if (element == "child") result_.joints.back().child = find(attributes, "link");
   }
 
-  void append_numbers(const NumberRule& rule, std::string_view value) {
-    int count = 0;
+  std::vector<double> read_numbers(const NumberRule& rule, std::string_view value) const {
+    std::vector<double> numbers;
     for (std::size_t i = value.find_first_not_of(' '); i != std::string_view::npos;
          i = value.find_first_not_of(' ', i)) {
       const std::size_t end = std::min(value.find(' ', i), value.size());
-      if (count++ > 0) result_.xml += ' ';
-      append_number(rule, value.substr(i, end - i));
+      numbers.push_back(read_number(rule, value.substr(i, end - i)));
       i = end;
     }
-    if (count != rule.count) {
-      fail(std::string(rule.element) + " " + std::string(rule.attribute) + " has " +
-           std::to_string(count) + " numbers instead of " + std::to_string(rule.count));
+    const auto count = static_cast<int>(numbers.size());
+    if (count != rule.count && !(rule.one_will_do && count == 1)) {
+      fail(name_of(rule) + " has " + std::to_string(count) + " numbers instead of " +
+           (rule.one_will_do ? "1 or " : "") + std::to_string(rule.count));
     }
+    return numbers;
   }
 
-  void append_number(const NumberRule& rule, std::string_view token) {
-    const auto refuse = [&](const char* reason) {
-      fail(std::string(rule.element) + " " + std::string(rule.attribute) + ": \"" +
-           std::string(token.substr(0, 40)) + "\" is " + reason);
+  double read_number(const NumberRule& rule, std::string_view token) const {
+    const auto refuse = [&](const std::string& reason) {
+      fail(name_of(rule) + ": " + in_quotes(token) + " is " + reason);
     };
     std::string_view digits = token;
     if (digits.starts_with('+')) digits.remove_prefix(1);
@@ -219,95 +314,34 @@ class Reducer {
       refuse("not a number");
     }
     if (error != std::errc{} || !std::isfinite(number)) refuse("not a finite number");
-    if (std::abs(number) > rule.largest) refuse("absurdly large");
-    std::array<char, 32> buffer{};
-    const auto written = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-    result_.xml.append(buffer.data(), written.ptr);
+    if (std::abs(number) > rule.largest) refuse("above the limit of " + text_of(rule.largest));
+    if (rule.positive && !(number > 0.0)) refuse("not greater than zero");
+    return number;
   }
 
-  [[noreturn]] void fail(const std::string& reason) const { reader_.fail(where_ + ": " + reason); }
+  static std::string name_of(const NumberRule& rule) {
+    return std::string(rule.element) + " " + std::string(rule.attribute);
+  }
 
-  XmlReader reader_;
+  [[noreturn]] void fail(const std::string& reason) const { throw UrdfError(where_ + reason); }
+
+  UrdfScope scope_;
   UrdfText result_;
-  std::vector<std::string> kept_;                  // open elements that are kept
-  std::array<std::set<std::string>, 6> siblings_;  // children seen so far, per depth of the parent
-  std::string where_ = "robot";
+  std::size_t depth_ = 0;   // of the current element; the root has 1
+  std::vector<Open> open_;  // the elements down to it that are read
+  std::string where_;       // the current link or joint
+  std::string type_;        // of the current joint
   int elements_ = 0;
-};
-
-// urdfdom must not see a loop: it would never free its links.
-class Tree {
- public:
-  explicit Tree(const UrdfText& text) : text_(text) {
-    for (const std::string& link : text.links) {
-      if (!parents_.emplace(link, nullptr).second) fail("link", link, "is not unique");
-    }
-    std::set<std::string> names;
-    for (const UrdfText::Joint& joint : text.joints) {
-      if (!names.insert(joint.name).second) fail("joint", joint.name, "is not unique");
-      add(joint);
-    }
-  }
-
-  void check() const {
-    std::string root;
-    for (const std::string& link : text_.links) {
-      if (parents_.at(link) != nullptr) continue;
-      if (!root.empty()) {
-        fail("link", link, "is a second root: no joint leads to it, nor to \"" + root + "\"");
-      }
-      root = link;
-    }
-    std::set<std::string> reached = {root};
-    for (const std::string& start : text_.links) {
-      // Up to what is known to hang on the root; a walk longer than the robot is a loop.
-      std::vector<std::string> walk;
-      std::string link = start;
-      while (!reached.contains(link)) {
-        walk.push_back(link);
-        const UrdfText::Joint* joint = parents_.at(link);
-        if (joint == nullptr || walk.size() > text_.links.size()) {
-          fail("link", start, "is not connected to a root link: the joints form a loop");
-        }
-        link = joint->parent;
-      }
-      reached.insert(walk.begin(), walk.end());
-    }
-  }
-
- private:
-  void add(const UrdfText::Joint& joint) {
-    for (const auto& [role, link] :
-         {std::pair("parent", &joint.parent), std::pair("child", &joint.child)}) {
-      if (link->empty()) fail("joint", joint.name, std::string("has no ") + role + " link");
-      if (!parents_.contains(*link)) {
-        fail("joint", joint.name,
-             std::string("has the ") + role + " link \"" + *link + "\", which does not exist");
-      }
-    }
-    const UrdfText::Joint*& above = parents_.at(joint.child);
-    if (above != nullptr) {
-      fail("link", joint.child,
-           "is the child of two joints, \"" + above->name + "\" and \"" + joint.name + "\"");
-    }
-    above = &joint;
-  }
-
-  [[noreturn]] static void fail(const std::string& kind, const std::string& name,
-                                const std::string& reason) {
-    throw UrdfError(kind + " \"" + name + "\" " + reason);
-  }
-
-  const UrdfText& text_;
-  std::map<std::string, const UrdfText::Joint*> parents_;  // link → joint above it
 };
 
 }  // namespace
 
-UrdfText reduce_urdf(std::string_view text) {
+UrdfText reduce_urdf(std::string_view text, XmlEncoding encoding, UrdfScope scope) {
   if (text.size() > kMaxUrdfBytes) throw UrdfError("URDF: larger than 64 MiB");
-  UrdfText reduced = Reducer(text).reduce();
-  Tree(reduced).check();
+  Reducer reducer(scope);
+  read_xml(text, encoding, reducer);
+  UrdfText reduced = std::move(reducer).result();
+  reduced.root = root_of_tree(reduced);
   return reduced;
 }
 

@@ -43,6 +43,7 @@ __all__: list[str] = [
     "centroidal_momentum_bias",
     "centroidal_momentum_matrix",
     "check_inertia",
+    "check_urdf",
     "forward_dynamics",
     "frame_bias_acceleration",
     "frame_jacobian",
@@ -1352,6 +1353,16 @@ def check_inertia(
     Refuses a mass [kg] with an inertia (3, 3) [kg m2] about the center of mass that no body can have.
 
     Raises: UrdfError naming the link and its principal moments.
+    """
+
+def check_urdf(content: bytes, is_utf8: bool = False) -> str:
+    """
+    Name of the root link of a URDF whose links, joints, inertias and shapes can be used.
+
+    Args:
+        content: the text as bytes.
+        is_utf8: read it as UTF-8, whatever byte order mark and XML declaration say.
+    Raises: UrdfError naming line and element.
     """
 
 def forward_dynamics(

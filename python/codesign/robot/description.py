@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import io
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -19,9 +19,9 @@ import numpy as np
 import yourdfpy
 from numpy.typing import ArrayLike
 
+from codesign.dynamics import check_urdf
 from codesign.errors import UrdfError
 from codesign.files import write_text
-from codesign.robot.checks import check_elements, check_tree, parse_xml
 from codesign.robot.inertial import Inertial
 from codesign.transforms import Matrix, require_pose, rotation_about, rpy_from_rotation
 
@@ -64,9 +64,10 @@ class RobotDescription:
         Raises: UrdfError naming the link or joint: malformed or too large text, document types, duplicate names,
         missing or non-finite numbers, links that are not one tree, negative mass, non-physical inertia.
         """
-        xml = parse_xml(text)
-        check_elements(xml)
-        robot = cls(check_tree(xml), directory, xml)
+        # A string has its characters already, whatever encoding it declares; lone surrogates are refused as no UTF-8.
+        content = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
+        root_link = check_urdf(content, isinstance(text, str))
+        robot = cls(root_link, directory, _parsed(content, ("utf-8",) if isinstance(text, str) else (None, "utf-8")))
         if not robot._model.validate():
             raise UrdfError("; ".join(str(error) for error in robot._model.errors))
         for name in () if as_published else robot.link_names:
@@ -250,6 +251,17 @@ class RobotDescription:
             if old.tag == element.tag and old.get("name") == element.get("name"):
                 xml[index] = element
         return RobotDescription(self.root_link, self.directory, xml)
+
+
+def _parsed(content: bytes, encodings: Sequence[str | None]) -> ET.Element:
+    """Root element of checked text, with comments, in the first encoding that fits; None: the one that it declares."""
+    for encoding in encodings:
+        parser = ET.XMLParser(target=ET.TreeBuilder(insert_comments=True), encoding=encoding)
+        try:
+            return ET.fromstring(content.lstrip(), parser=parser)
+        except ET.ParseError as error:
+            reason = error
+    raise UrdfError(f"not readable text: {reason}")
 
 
 def number_text(values: ArrayLike) -> str:

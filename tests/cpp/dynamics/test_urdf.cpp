@@ -109,35 +109,65 @@ TEST(Urdf, RefusesWhatIsNotWellFormed) {
   for (std::size_t length = good.find("<robot"); length + 2 < good.size(); length += 7) {
     expect_refused(good.substr(0, length), {"line"});
   }
-  expect_refused(replaced(good, "</robot>", "</robot><robot name=\"b\"/>"), {"second root"});
-  expect_refused(replaced(good, "</robot>", "</robot> text"), {"outside"});
-  expect_refused(replaced(good, "</link>", "</lin>"), {"</lin>", "<link>", "line 3"});
-  expect_refused(replaced(good, "<link name=", "<link name"), {"no value"});
-  expect_refused(replaced(good, "name=\"base\"", "name=base"), {"not quoted"});
-  expect_refused(replaced(good, "name=\"base\"", "name=\"base\" name=\"b\""), {"twice"});
-  expect_refused(replaced(good, "name=\"base\"", "name=\"ba<se\""), {"'<'"});
-  expect_refused(replaced(good, "name=\"base\"", "name=\"ba&se\""), {"'&'"});
-  expect_refused(replaced(good, "name=\"base\"", "name=\"ba&#xD800;\""), {"character"});
-  expect_refused(replaced(good, "name=\"base\"", "name=\"ba&#x110000;\""), {"character"});
+  expect_refused(replaced(good, "</robot>", "</robot><robot name=\"b\"/>"),
+                 {"line 8", "junk after document element at `<robot name=\"b\"/>`"});
+  expect_refused(replaced(good, "</robot>", "</robot> text"), {"junk after document element"});
+  expect_refused(replaced(good, "</link>", "</lin>"),
+                 {"line 3", "mismatched tag at `lin>` inside <link>"});
+  expect_refused(replaced(good, "<link name=", "<link name"),
+                 {"line 3", "not well-formed", "at `"});
+  expect_refused(replaced(good, "name=\"base\"", "name=base"), {"not well-formed", "`base><"});
+  expect_refused(replaced(good, "name=\"base\"", "name=\"base\" name=\"b\""),
+                 {"duplicate attribute", "`name=\"b\""});
+  expect_refused(replaced(good, "name=\"base\"", "name=\"ba<se\""), {"not well-formed", "`<se"});
+  expect_refused(replaced(good, "name=\"base\"", "name=\"ba&se\""), {"not well-formed"});
+  expect_refused(replaced(good, "name=\"base\"", "name=\"ba&#xD800;\""),
+                 {"invalid character number"});
+  expect_refused(replaced(good, "name=\"base\"", "name=\"ba&#x110000;\""),
+                 {"invalid character number"});
   expect_refused(replaced(good, "name=\"base\"", "name=\"ba&#10;se\""), {"character"});
-  expect_refused(replaced(good, "name=\"base\"", "name=\"ba\xC3(se\""), {"UTF-8"});
+  expect_refused(replaced(good, "name=\"base\"", "name=\"ba\xC3(se\""),
+                 {"line 3", "not well-formed", "`?(se"});
   expect_refused(replaced(good, "name=\"base\"", "name=\"\""), {"without a name"});
   expect_refused(replaced(good, "<link name=\"base\">", "<link>"), {"without a name"});
   std::string zero = good;
   zero[30] = '\0';
-  expect_refused(zero, {"zero byte"});
+  expect_refused(zero, {"not well-formed"});
   expect_refused("<a></a>", {"<robot>"});
   expect_refused("<!-- nothing -->", {"no element"});
 }
 
 TEST(Urdf, AcceptsEveryWellFormedSpelling) {
   const std::string good = small_robot();
-  EXPECT_EQ(load_urdf(replaced(good, "<link", "<!-- a > b -- --><?p ?>\n<link")).joint_count(), 1);
+  EXPECT_EQ(load_urdf(replaced(good, "<link", "<!-- a > b - --><?p ?>\n<link")).joint_count(), 1);
   EXPECT_EQ(load_urdf(replaced(good, "0 0 1", "\n +0\t0.\r\n 1e0 ")).joint_count(), 1);
   EXPECT_EQ(load_urdf(replaced(good, "name=\"base\"", "name = 'base'")).frames[0].name, "base");
   const Model model = load_urdf(
       robot(link("&#66;&lt;&amp;&quot;&#xe9;\xE2\x82\xAC&#x1F916;")));  // B<&"é€ and a robot face
   EXPECT_EQ(model.frames[0].name, "B<&\"\xC3\xA9\xE2\x82\xAC\xF0\x9F\xA4\x96");
+}
+
+// e with acute accent in the encoding that the declaration names, or in the one of the file.
+TEST(Urdf, FilesAreReadInTheEncodingThatTheyDeclareAndTextsAsUtf8) {
+  const auto path = std::filesystem::temp_directory_path() / "codesign_test_encoding.urdf";
+  const auto first_link = [&](const std::string& declared, const std::string& name) {
+    const std::string text = replaced(robot(link(name)), "?>", " encoding=\"" + declared + "\"?>");
+    std::ofstream(path) << text;
+    return load_urdf(path.string()).frames[0].name;
+  };
+  EXPECT_EQ(first_link("UTF-8", "\xC3\xA9"), "\xC3\xA9");
+  EXPECT_EQ(first_link("utf8", "\xC3\xA9"), "\xC3\xA9");  // not the name of any encoding
+  EXPECT_EQ(first_link("ISO-8859-1", "\xE9"), "\xC3\xA9");
+  EXPECT_THROW(first_link("UTF-8", "\xE9"), UrdfError);
+  std::filesystem::remove(path);
+  const std::string text = robot(link("\xC3\xA9"));
+  const std::string declared = replaced(text, "?>", " encoding=\"ISO-8859-1\"?>");
+  EXPECT_EQ(load_urdf(declared).frames[0].name, "\xC3\xA9");
+}
+
+TEST(Urdf, LinesAreCountedFromTheFirstOfTheText) {
+  EXPECT_EQ(load_urdf("\n\n  " + small_robot()).joint_count(), 1);
+  expect_refused("\n\n" + replaced(small_robot(), "</link>", "</lin>"), {"line 5"});
 }
 
 TEST(Urdf, RefusesEntityBombsAndDoctypes) {
@@ -149,7 +179,8 @@ TEST(Urdf, RefusesEntityBombsAndDoctypes) {
   }
   expect_refused(bomb + "]>" + replaced(small_robot(), "<?xml version=\"1.0\"?>", ""),
                  {"document type"});
-  expect_refused(replaced(small_robot(), "name=\"base\"", "name=\"&j;\""), {"unknown entity"});
+  expect_refused(replaced(small_robot(), "name=\"base\"", "name=\"&j;\""),
+                 {"line 3", "undefined entity"});
 }
 
 TEST(Urdf, RefusesHugeAndDeepInput) {
@@ -184,15 +215,17 @@ TEST(Urdf, RefusesNumbersThatAreNone) {
   expect_refused(replaced(good, "0.1 0 0", "0.1 0 0 0"), {"4 numbers"});
   expect_refused(replaced(good, "ixx=\"0.02\"", "ixx=\"\""), {"link \"base\"", "ixx"});
   expect_refused(replaced(good, "value=\"1.000000\"", "value=\"1 2\""), {"link \"base\"", "mass"});
-  expect_refused(replaced(good, "value=\"1.000000\"", "value=\"1e30\""), {"absurdly large"});
-  expect_refused(replaced(good, "0.1 0 0", "1e10 0 0"), {"absurdly large"});
+  expect_refused(replaced(good, "value=\"1.000000\"", "value=\"1e30\""),
+                 {"above the limit of 1e+09"});
+  expect_refused(replaced(good, "0.1 0 0", "1e10 0 0"),
+                 {"joint \"mount\"", "above the limit of 1e+09"});
   expect_refused(replaced(good, "rpy=\"0 0 0\"", "quat_xyzw=\"0 0 0 1\""), {"quat_xyzw"});
 }
 
 TEST(Urdf, RefusesDuplicates) {
   const std::string good = small_robot();
-  expect_refused(replaced(good, "name=\"tool\"", "name=\"arm\""), {"arm", "unique"});
-  expect_refused(replaced(good, "name=\"mount\"", "name=\"turn\""), {"turn", "unique"});
+  expect_refused(replaced(good, "name=\"tool\"", "name=\"arm\""), {"arm", "defined twice"});
+  expect_refused(replaced(good, "name=\"mount\"", "name=\"turn\""), {"turn", "defined twice"});
   expect_refused(
       replaced(good, "<mass value=\"1.000000\"/>", "<mass value=\"1.0\"/><mass value=\"2.0\"/>"),
       {"link \"base\"", "more than one <mass>"});
@@ -202,7 +235,7 @@ TEST(Urdf, RefusesDuplicates) {
 
 TEST(Urdf, RefusesBrokenTrees) {
   const std::string links = link("a") + link("b") + link("c");
-  expect_refused(robot(""), {"link"});
+  expect_refused(robot(""), {"no links"});
   expect_refused(robot(links + joint("j", "revolute", "a", "b")),
                  {"link \"c\"", "second root", "\"a\""});
   expect_refused(robot(links + joint("j", "revolute", "a", "b") + joint("k", "revolute", "a", "c") +
@@ -225,8 +258,9 @@ TEST(Urdf, RefusesJointsThatCannotMove) {
     expect_refused(text, {"joint \"turn\"", type});
     EXPECT_EQ(load_urdf(text, {.joints = std::vector<std::string>{}}).body_count(), 1);
   }
-  expect_refused(replaced(good, "revolute", "helical"), {"turn"});
-  expect_refused(replaced(good, " type=\"revolute\"", ""), {"turn"});
+  expect_refused(replaced(good, "revolute", "helical"),
+                 {"joint \"turn\"", "\"helical\"", "prismatic"});
+  expect_refused(replaced(good, " type=\"revolute\"", ""), {"joint \"turn\"", "no type"});
   expect_refused(replaced(good, "0 0 1", "0 0 0"), {"joint \"turn\"", "axis"});
   expect_refused(replaced(good, "0 0 1", "0 0 1e-9"), {"joint \"turn\"", "axis"});
   const std::string mimic =
@@ -299,7 +333,10 @@ TEST(Urdf, RefusesIncompleteJoints) {
   const std::string good = small_robot();
   expect_refused(
       replaced(good, "<limit lower=\"-1\" upper=\"1\" effort=\"5\" velocity=\"2\"/>", ""),
-      {"turn", "limits"});
+      {"joint \"turn\"", "a revolute joint needs limits"});
+  expect_refused(replaced(good, "lower=\"-1\"", "lower=\"2\""),
+                 {"joint \"turn\"", "2 is above its upper limit 1"});
+  expect_refused(replaced(good, " effort=\"5\"", ""), {"joint \"turn\"", "no effort"});
   expect_refused(replaced(good, "<child link=\"arm\"/>", ""), {"turn"});
   expect_refused(replaced(good, "<parent link=\"base\"/>", ""), {"turn"});
 }

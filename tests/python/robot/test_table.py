@@ -125,7 +125,7 @@ def test_a_table_of_a_new_robot_becomes_urdf(tmp_path):
         ("axis = [0, 0, 2]", "axis = [0, 0, 0]", "length zero"),
         (", limits_deg = [-90, 180]", "", "limits_deg"),
         ("[-90, 180]", "[90, -180]", "lower limit"),
-        ('parent = "base"', 'parent = "bass"', "'bass' does not exist"),
+        ('parent = "base"', 'parent = "bass"', '"bass", which does not exist'),
         ('name = "arm"', 'name = "base"', "defined twice"),
         ("name = ", "name : ", "line 2"),
     ],
