@@ -23,7 +23,7 @@ from codesign.followup.derived import coarse
 from codesign.problem.pareto import Hypervolume, non_dominated, objective_rows
 from codesign.search.optimization import load_problem, optimize, resume, sweep
 from codesign.search.progress import ProgressBar
-from codesign.storage.store import DATABASE
+from codesign.storage.database import DATABASE
 
 
 def main() -> None:

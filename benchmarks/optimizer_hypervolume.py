@@ -21,8 +21,8 @@ from standin import PROBLEMS, standin
 from codesign.problem.pareto import Hypervolume, objective_rows
 from codesign.problem.protocols import Problem
 from codesign.search.optimization import load_problem, optimize, resume
+from codesign.storage.database import DATABASE
 from codesign.storage.runs import Run
-from codesign.storage.store import DATABASE
 
 
 def main() -> None:

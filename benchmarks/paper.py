@@ -35,8 +35,8 @@ from codesign.report.writing import compute_details
 from codesign.search.optimization import optimize
 from codesign.search.progress import ProgressBar
 from codesign.storage.cache import MemoryCache
+from codesign.storage.database import DATABASE
 from codesign.storage.runs import Run, load_run
-from codesign.storage.store import DATABASE
 
 PAPER_SECONDS = 216.0  # a design, as the paper states
 PAPER_YIELD, STATED_YIELD = 524.0, 462.0  # MPa: in the published safety factors, in the paper's text

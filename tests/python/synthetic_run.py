@@ -11,7 +11,8 @@ from codesign.execution.pool import StudyRef
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
-from codesign.storage.store import Record, RunStore
+from codesign.storage.records import Record
+from codesign.storage.store import RunStore
 
 SPACE = DesignSpace(
     (

@@ -14,8 +14,9 @@ from codesign.search.base import Grid
 from codesign.search.driver import WAIT, checked
 from codesign.search.optimization import Resources, cache_path, make_executor, stored_study
 from codesign.search.progress import Progress
+from codesign.storage.records import Record
 from codesign.storage.runs import load_run
-from codesign.storage.store import Record, RunStore
+from codesign.storage.store import RunStore
 
 
 def revisit(

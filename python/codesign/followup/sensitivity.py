@@ -18,8 +18,8 @@ from codesign.search.base import Grid
 from codesign.search.optimization import Resources, StudyLike, load_problem, resume, run_search
 from codesign.search.sampling import grid_points
 from codesign.search.settings import Settings
+from codesign.storage.database import DATABASE
 from codesign.storage.runs import load_run
-from codesign.storage.store import DATABASE
 
 RESAMPLES = 200  # of the bootstrap behind the confidence intervals
 

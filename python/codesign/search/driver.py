@@ -22,7 +22,8 @@ from codesign.problem.protocols import PartCache, Problem
 from codesign.search.base import Grid, Search
 from codesign.search.progress import Progress
 from codesign.search.provenance import session_provenance
-from codesign.storage.store import Generation, Record, RunStore
+from codesign.storage.records import Generation, Record
+from codesign.storage.store import RunStore
 
 WAIT = 0.5  # s between looks at the clock while nothing finishes
 

@@ -11,7 +11,9 @@ from codesign.errors import StoreError
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import Hypervolume, non_dominated, objective_rows
-from codesign.storage.store import DATABASE, Generation, Record, RunStore
+from codesign.storage.database import DATABASE
+from codesign.storage.records import Generation, Record
+from codesign.storage.store import RunStore
 
 
 @dataclass(frozen=True, slots=True)

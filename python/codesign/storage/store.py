@@ -1,4 +1,4 @@
-"""A run's results in one SQLite file: a row a design, written by one process, never damaged by its end.
+"""A run's results in one SQLite file: one row per design, written by one process, whole after a crash of the writer.
 
 The file `run.sqlite` is in WAL mode: a stored row survives the end of the process, however it ends, and a power cut if
 a checkpoint came after it (each generation makes one); no power cut damages the file. `run.lock` holds the writer's
@@ -9,55 +9,28 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import fcntl
 import json
-import os
-import socket
 import sqlite3
-import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
 from codesign.errors import StoreError
 from codesign.files import replacing
 from codesign.problem.evaluation import Evaluation
+from codesign.storage.database import (
+    APPLICATION_ID,
+    DATABASE,
+    MIGRATIONS,
+    VERSION,
+    existing,
+    guard,
+    lock_folder,
+    now,
+    write_new,
+)
+from codesign.storage.records import Generation, Grid, Record
 
-DATABASE = "run.sqlite"
-LOCK = "run.lock"
-APPLICATION_ID = 0x636F6473  # "cods": tells our files from other SQLite files
-VERSION = 1
-SCHEMA = """
-CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE evaluations (
-  id INTEGER PRIMARY KEY,
-  number INTEGER UNIQUE,            -- order in which the search asked for it, from 0; NULL: asked for by a person
-  generation INTEGER,
-  grid TEXT NOT NULL,               -- JSON list of grid indices, in the order of the study's variables
-  trajectory TEXT NOT NULL DEFAULT '',  -- '': the study's own
-  study_hash TEXT NOT NULL,
-  status TEXT NOT NULL CHECK (status IN ('queued', 'running', 'feasible', 'infeasible', 'failed')),
-  reason TEXT,
-  design TEXT NOT NULL,             -- JSON objects from here on, as in Evaluation
-  objectives TEXT, objective_families TEXT, constraints TEXT, violations TEXT,
-  parts TEXT, flight TEXT, seconds TEXT, provenance TEXT,
-  cached INTEGER NOT NULL DEFAULT 0, worker TEXT, wall_seconds REAL, finished TEXT,
-  UNIQUE (grid, trajectory, study_hash)
-);
-CREATE TABLE generations (
-  generation INTEGER PRIMARY KEY,
-  told INTEGER NOT NULL,            -- designs ranked or failed so far
-  feasible INTEGER NOT NULL, infeasible INTEGER NOT NULL, failed INTEGER NOT NULL,
-  hypervolume REAL,                 -- of all feasible designs so far; NULL before the first
-  population TEXT NOT NULL          -- JSON list of numbers: the survivors, in the algorithm's order
-);
-CREATE TABLE sessions (
-  id INTEGER PRIMARY KEY, started TEXT NOT NULL, ended TEXT, outcome TEXT, seconds REAL NOT NULL DEFAULT 0,
-  provenance TEXT NOT NULL          -- JSON: host, pid, versions, workers
-);
-"""
-MIGRATIONS: dict[int, str] = {}  # version -> script that makes it version + 1
 UNFINISHED_ROW = "grid = ? AND trajectory = ? AND status IN ('queued', 'running')"
 JSON_FIELDS = (
     "objectives",
@@ -69,41 +42,6 @@ JSON_FIELDS = (
     "seconds",
     "provenance",
 )
-
-Grid = tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Record:
-    """A finished row."""
-
-    number: int | None
-    generation: int | None
-    grid: Grid
-    trajectory: str
-    evaluation: Evaluation
-    cached: bool = False
-    worker: str = ""
-    wall_seconds: float = 0.0
-
-    def identity(self) -> dict[str, Any]:
-        """What must be equal in two runs of the same study: everything but times, places and versions."""
-        document = _without_seconds(self.evaluation.to_dict())
-        del document["provenance"]
-        return {"number": self.number, "grid": self.grid, "trajectory": self.trajectory, **document}
-
-
-@dataclass(frozen=True, slots=True)
-class Generation:
-    """State after a generation's results were told to the search."""
-
-    generation: int
-    told: int
-    feasible: int
-    infeasible: int
-    failed: int
-    hypervolume: float | None
-    population: tuple[int, ...]
 
 
 class RunStore:
@@ -124,13 +62,13 @@ class RunStore:
             out.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise StoreError(f"{out}: cannot be made: {error.strerror}") from error
-        lock = _lock(out)
+        lock = lock_folder(out)
         try:
             path = out / DATABASE
             if path.exists():
                 raise StoreError(f"{out} holds a run already: continue it with resume, or choose another folder")
-            with _guard(path), replacing(path) as beside:
-                _write_new(beside, meta)
+            with guard(path), replacing(path) as beside:
+                write_new(beside, meta)
         except BaseException as error:
             lock.close()
             if isinstance(error, OSError):
@@ -144,8 +82,8 @@ class RunStore:
 
         Raises: StoreError if there is none, another process writes it, or it is not ours or newer than this program.
         """
-        path = _existing(out)
-        store = cls._connect(path, _lock(path.parent))
+        path = existing(out)
+        store = cls._connect(path, lock_folder(path.parent))
         with store.transaction():
             store._execute("UPDATE evaluations SET status = 'queued' WHERE status = 'running'")
         return store
@@ -153,7 +91,7 @@ class RunStore:
     @classmethod
     def read(cls, out: str | Path) -> RunStore:
         """An existing run for reading only, also while another process writes it, also from a read-only place."""
-        path = _existing(out)
+        path = existing(out)
         errors = []
         for mode in ("mode=ro", "mode=ro&immutable=1"):
             if "immutable" in mode and path.with_name(DATABASE + "-wal").exists():
@@ -170,7 +108,7 @@ class RunStore:
     @classmethod
     def _connect(cls, path: Path, lock: IO[bytes]) -> RunStore:
         try:
-            with _guard(path):
+            with guard(path):
                 connection = sqlite3.connect(path, isolation_level=None, timeout=30.0)
         except StoreError:
             lock.close()
@@ -199,7 +137,7 @@ class RunStore:
         if version < VERSION and self._lock is None:
             raise StoreError(f"{self.path}: format {version} is older than {VERSION}; `codesign resume` updates it")
         while version < VERSION:
-            with _guard(self.path):
+            with guard(self.path):
                 step = f"BEGIN IMMEDIATE; {MIGRATIONS[version]} PRAGMA user_version = {version + 1}; COMMIT;"
                 self._connection.executescript(step)
             version += 1
@@ -219,7 +157,7 @@ class RunStore:
             self._lock.close()
 
     def _execute(self, statement: str, values: Sequence[Any] = ()) -> sqlite3.Cursor:
-        with _guard(self.path):
+        with guard(self.path):
             return self._connection.execute(statement, values)
 
     @contextlib.contextmanager
@@ -253,7 +191,7 @@ class RunStore:
 
         Those that exist keep their state; one without a number gets the given one.
         """
-        with _guard(self.path):
+        with guard(self.path):
             self._connection.executemany(
                 "INSERT INTO evaluations (number, generation, grid, trajectory, study_hash, status, design) "
                 "VALUES (?, ?, ?, ?, ?, 'queued', ?) ON CONFLICT (grid, trajectory, study_hash) DO UPDATE "
@@ -263,7 +201,7 @@ class RunStore:
 
     def mark(self, grids: Iterable[Grid], status: str, trajectory: str = "") -> None:
         """Sets unfinished rows to `queued` or `running`."""
-        with _guard(self.path):
+        with guard(self.path):
             self._connection.executemany(
                 f"UPDATE evaluations SET status = ? WHERE {UNFINISHED_ROW}",
                 [(status, _grid_key(grid), trajectory) for grid in grids],
@@ -347,65 +285,5 @@ class RunStore:
         return [dict(zip(names, row[:5], strict=True)) | {"provenance": json.loads(row[5])} for row in rows]
 
 
-def now() -> str:
-    """Time stamp of rows and sessions (UTC, ISO 8601)."""
-    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
-
-
-def _existing(out: str | Path) -> Path:
-    path = Path(out) / DATABASE
-    try:
-        found = path.is_file()
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be read: {error.strerror}") from error
-    if not found:
-        raise StoreError(f"{out}: no run here (no file {DATABASE})")
-    return path
-
-
-def _lock(out: Path) -> IO[bytes]:
-    """The writer's lock of a run's folder; raises StoreError naming the process that holds it."""
-    path = out / LOCK
-    try:
-        lock = path.open("a+b", buffering=0)
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be written: {error.strerror}") from error
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        lock.seek(0)
-        holder = (lock.read() or b"").decode().strip() or "another process"
-        lock.close()
-        raise StoreError(f"{out}: this run is being written by {holder}") from error
-    with contextlib.suppress(OSError):  # full disk: the lock holds without the text
-        lock.truncate(0)
-        lock.write(f"process {os.getpid()} on {socket.gethostname()} since {now()}\n".encode())
-    return lock
-
-
-def _write_new(path: Path, meta: Mapping[str, Any]) -> None:
-    """The database of a run without rows."""
-    with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as connection:
-        stamp = f"PRAGMA application_id = {APPLICATION_ID}; PRAGMA user_version = {VERSION};"
-        connection.executescript(f"BEGIN; {SCHEMA} {stamp} COMMIT;")
-        rows = [(key, json.dumps(value, allow_nan=False)) for key, value in meta.items()]
-        connection.executemany("INSERT INTO meta (key, value) VALUES (?, ?)", rows)
-
-
-@contextlib.contextmanager
-def _guard(path: Path) -> Iterator[None]:
-    """Turns SQLite's errors into StoreError."""
-    try:
-        yield
-    except (sqlite3.Error, sqlite3.Warning) as error:
-        raise StoreError(f"{path}: {error}") from error
-
-
 def _grid_key(grid: Grid) -> str:
     return json.dumps([int(index) for index in grid], separators=(",", ":"))
-
-
-def _without_seconds(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _without_seconds(entry) for key, entry in value.items() if key != "seconds"}
-    return value

@@ -10,8 +10,8 @@ from typing import Any
 
 from codesign.errors import StoreError
 from codesign.files import replacing
+from codesign.storage.records import Record
 from codesign.storage.runs import Run
-from codesign.storage.store import Record
 
 
 def table(run: Run) -> list[dict[str, Any]]:

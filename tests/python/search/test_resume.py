@@ -13,8 +13,9 @@ import pytest
 
 from codesign.errors import StoreError, StudyError
 from codesign.search.optimization import optimize, resume
+from codesign.storage.database import DATABASE
 from codesign.storage.runs import load_run
-from codesign.storage.store import DATABASE, RunStore
+from codesign.storage.store import RunStore
 from fake_study import FakeStudy, study
 
 SCRIPT = """

@@ -15,8 +15,10 @@ import pytest
 from codesign.errors import StoreError
 from codesign.problem.evaluation import Evaluation
 from codesign.search.optimization import optimize, resume
+from codesign.storage.database import DATABASE, VERSION
+from codesign.storage.records import Generation, Record
 from codesign.storage.runs import load_run
-from codesign.storage.store import DATABASE, VERSION, Generation, Record, RunStore
+from codesign.storage.store import RunStore
 from fake_study import study
 
 EVALUATION = Evaluation(
