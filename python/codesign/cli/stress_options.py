@@ -7,17 +7,10 @@ import math
 import numpy as np
 
 from codesign import fem
-from codesign.errors import CodesignError
+from codesign.errors import CodesignError, ModelError
 from codesign.fem.selections import Box, Facing, Holes, NamedFace, Near, Place
+from codesign.parts.materials import named_material
 from codesign.units import GIGA, MEGA
-
-# Typical catalogue values; ergal (aluminium 7075-T6) as in the shipped study.
-MATERIALS = {
-    "ergal": fem.Material("ergal", 71.7 * GIGA, 0.3, 2810.0, 462.0 * MEGA),
-    "aluminium_6061_t6": fem.Material("aluminium_6061_t6", 68.9 * GIGA, 0.33, 2700.0, 276.0 * MEGA),
-    "steel_s235": fem.Material("steel_s235", 210.0 * GIGA, 0.3, 7850.0, 235.0 * MEGA),
-    "titanium_ti6al4v": fem.Material("titanium_ti6al4v", 113.8 * GIGA, 0.342, 4430.0, 880.0 * MEGA),
-}
 
 
 class StressInputError(CodesignError, ValueError):
@@ -74,16 +67,15 @@ def parse_load(text: str, scale: float) -> tuple[Place, tuple[float, ...]]:
 
 
 def find_material(text: str) -> fem.Material:
-    """A name of MATERIALS, or `E_GPa,nu,yield_MPa[,kg/m3]`.
+    """A name of `codesign.parts.materials`, or `E_GPa,nu,yield_MPa[,kg/m3]`.
 
     Raises: StressInputError.
     """
-    if text in MATERIALS:
-        return MATERIALS[text]
     if "," not in text:
-        raise StressInputError(
-            f"material {text!r}: there are {', '.join(MATERIALS)}; or give E_GPa,nu,yield_MPa[,density_kg_m3]"
-        )
+        try:
+            return named_material(text)
+        except ModelError as error:
+            raise StressInputError(f"{error}; or give E_GPa,nu,yield_MPa[,density_kg_m3]") from None
     modulus, ratio, strength, density = (*_numbers(text, 4 if text.count(",") == 3 else 3, text), 0.0)[:4]
     if strength <= 0.0:
         raise StressInputError(f"material {text!r}: the yield strength must be positive")

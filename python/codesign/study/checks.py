@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from codesign.names import nearest
+from codesign.parts.materials import material_names
 from codesign.parts.part import Part, parameter_units
 from codesign.problem.quantities import QUANTITIES, REDUCTIONS
 from codesign.study.config import LimitConfig, PartConfig, StudyConfig, VariableConfig
@@ -76,7 +77,8 @@ def _grid_problems(key: str, variable: VariableConfig) -> Iterator[Problem]:
 def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]) -> Iterator[Problem]:
     key = f"parts.{part.name}"
     if part.material not in config.materials:
-        yield f"{key}.material", f"{part.material!r} is not in [materials]; {nearest(part.material, config.materials)}"
+        near = nearest(part.material, dict.fromkeys([*config.materials, *material_names()]))
+        yield f"{key}.material", f"{part.material!r} is neither in [materials] nor a known material; {near}"
     units = parameter_units(part_class)
     for parameter in part.parameters:
         yield from unknown(f"{key}.parameters", f"parameter of {part.shape}", parameter, units)

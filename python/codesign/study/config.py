@@ -89,8 +89,9 @@ class PartConfig(Section, frozen=True, kw_only=True):
 
     shape: `module:Class`; the module is a file beside study.toml or any importable module.
     parameters: the part's parameter -> design variable. supports: faces that are clamped. options: further keyword
-    arguments of the class. loads: of the only load case; or cases: any number of them, by name. density_kg_m3: of the
-    part's mass, where it is not that of the material; reports say so.
+    arguments of the class. loads: of the only load case; or cases: any number of them, by name. material: a name of
+    [materials], else one that `codesign materials` lists. density_kg_m3: of the part's mass, where it is not that of
+    the material; reports say so.
     """
 
     name: Name
@@ -226,7 +227,7 @@ class StudyConfig(Section, frozen=True, kw_only=True):
     robot: RobotConfig
     variables: dict[str, VariableConfig]
     baseline: dict[str, float] = {}
-    materials: dict[str, MaterialConfig]
+    materials: dict[str, MaterialConfig] = {}
     parts: list[PartConfig]
     fem: FemConfig = FemConfig()
     flight: FlightConfig

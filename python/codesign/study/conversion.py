@@ -14,7 +14,8 @@ import msgspec.inspect as kinds
 
 from codesign.errors import StudyError
 from codesign.names import closest, nearest
-from codesign.study.config import DECIDING_SECTIONS, RawStudy, StudyConfig
+from codesign.parts.materials import find_known
+from codesign.study.config import DECIDING_SECTIONS, MaterialConfig, RawStudy, StudyConfig
 
 MOST_PROBLEMS = 50  # that are told at once
 LARGEST_NUMBER = 1e100  # beyond it squares overflow; NaN is refused by the same comparison
@@ -30,9 +31,21 @@ def convert(raw: RawStudy, path: Path) -> StudyConfig:
         if not abs(number) <= LARGEST_NUMBER:
             raise StudyError(f"{path}: {key}: {_shown(number)} is not a finite number")
     try:
-        return msgspec.convert(raw, StudyConfig)
+        config = msgspec.convert(raw, StudyConfig)
     except msgspec.ValidationError as error:
         raise StudyError(f"{path}: {_explained(raw, error)}") from error
+    return _with_known_materials(config)
+
+
+def _with_known_materials(config: StudyConfig) -> StudyConfig:
+    """The configuration with the materials that its parts name and [materials] does not give."""
+    named = {part.material: find_known(part.material) for part in config.parts if part.material not in config.materials}
+    known = {
+        name: MaterialConfig(**{key: getattr(material, key) for key in MaterialConfig.__struct_fields__})
+        for name, material in named.items()
+        if material is not None
+    }
+    return msgspec.structs.replace(config, materials=config.materials | known) if known else config
 
 
 def type_problems(raw: RawStudy) -> list[str]:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from importlib import metadata
 from pathlib import Path
 
+from codesign.parts.materials import MATERIALS_FILE
 from codesign.problem.identity import Identity
 from codesign.study.config import DECIDING_SECTIONS, RawStudy
 from codesign.study.imports import PACKAGE, imports_of, version_of_import
@@ -50,10 +51,11 @@ def part_identity(study: Identity) -> Identity:
 
 @functools.cache
 def engine_hash() -> str:
-    """Hash of the code that turns a design into numbers: compiled core, modules beside the wings, DECIDING_WINGS."""
+    """Hash of the code that turns a design into numbers: core, modules beside the wings, DECIDING_WINGS, materials."""
     from codesign import _core
 
-    return _digest([Path(str(_core.__file__)).read_bytes(), files_hash(engine_files()).encode()])
+    core, code = Path(str(_core.__file__)).read_bytes(), files_hash(engine_files()).encode()
+    return _digest([core, code, MATERIALS_FILE.read_bytes()])
 
 
 def engine_files() -> dict[str, Path]:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from codesign.cli.stress import stress_document
-from codesign.cli.stress_options import MATERIALS, StressInputError, find_material, parse_load
+from codesign.cli.stress_options import StressInputError, find_material, parse_load
 from codesign.errors import MeshError
+from codesign.parts.materials import named_material
 from vtu_files import read_vtu
 
 CORNERS = np.array(list(product((0.0, 100.0), (0.0, 10.0), (0.0, 10.0))))
@@ -33,7 +34,7 @@ def bar(tmp_path):
 
 @pytest.mark.parametrize("fix", ["normal:-1,0,0", "near:0,5,5", "box:-1,-1,-1,0.1,11,11", "normal:-1,0.1,0:10"])
 def test_a_bar_in_tension(bar, fix, tmp_path):
-    document = stress_document(bar, 1e-3, MATERIALS["ergal"], [fix], [PULL], 5.0, tmp_path / "bar.vtu")
+    document = stress_document(bar, 1e-3, named_material("ergal"), [fix], [PULL], 5.0, tmp_path / "bar.vtu")
     assert document["stress_50"] == pytest.approx(10e6, rel=0.04)  # 1000 N over 100 mm², more near the clamp
     assert document["safety_factor"] == pytest.approx(462 / 10, rel=0.06)  # 3 mm beside the clamp: +4 %
     assert document["max_displacement"] == pytest.approx(10e6 * 0.1 / 71.7e9, rel=0.02)
@@ -47,20 +48,20 @@ def test_a_bar_in_tension(bar, fix, tmp_path):
 
 
 def test_the_edge_length_follows_the_wall(bar):
-    document = stress_document(bar, 1e-3, MATERIALS["ergal"], ["normal:-1,0,0"], [PULL])
+    document = stress_document(bar, 1e-3, named_material("ergal"), ["normal:-1,0,0"], [PULL])
     assert 1.5e-3 < document["edge_length"] < 4e-3  # mean wall 4.8 mm
     assert document["tetrahedra"] < 60_000
 
 
 def test_a_part_of_micrometres(bar):
-    document = stress_document(bar, 1e-6, MATERIALS["ergal"], ["normal:-1,0,0"], ["normal:1,0,0: 1e-3 0 0"], 5e-3)
+    document = stress_document(bar, 1e-6, named_material("ergal"), ["normal:-1,0,0"], ["normal:1,0,0: 1e-3 0 0"], 5e-3)
     assert document["exclusion"]["largest"] < 11e-6
     assert document["safety_factor"] == pytest.approx(462 / 10, rel=0.4)  # nearer to the clamp
 
 
 def test_forces_add_up(bar):
     halves = ["normal:1,0,0: 500 0 0", "box:99.9,-1,-1,101,11,11: 500,0,0"]
-    document = stress_document(bar, 1e-3, MATERIALS["ergal"], ["near:0,5,5"], halves, 5.0)
+    document = stress_document(bar, 1e-3, named_material("ergal"), ["near:0,5,5"], halves, 5.0)
     assert document["applied_force"] == [1000, 0, 0]
     assert document["stress_50"] == pytest.approx(10e6, rel=0.04)
 
@@ -91,12 +92,12 @@ def test_materials_by_name_and_by_numbers():
 )
 def test_selections_that_make_no_sense_are_refused(bar, fix, load, message):
     with pytest.raises(StressInputError, match=message):
-        stress_document(bar, 1e-3, MATERIALS["ergal"], fix, load, 5.0)
+        stress_document(bar, 1e-3, named_material("ergal"), fix, load, 5.0)
 
 
 def test_fields_and_picture_are_written(bar, tmp_path):
     vtu, png = tmp_path / "bar.vtu", tmp_path / "bar.png"
-    stress_document(bar, 1e-3, MATERIALS["ergal"], ["normal:-1,0,0"], [PULL], 5.0, vtu, png)
+    stress_document(bar, 1e-3, named_material("ergal"), ["normal:-1,0,0"], [PULL], 5.0, vtu, png)
     field = read_vtu(vtu)
     assert {"displacement", "stress", "von_mises"} <= set(field.point_data)
     assert len(field.cell_data["error"]) == len(field.cells)
@@ -110,7 +111,7 @@ def test_loads_accept_commas_and_spaces():
 def test_bad_files_are_mesh_errors(tmp_path):
     (tmp_path / "empty.stl").write_bytes(b"")
     with pytest.raises(MeshError, match=r"empty\.stl: the file is empty"):
-        stress_document(tmp_path / "empty.stl", 1e-3, MATERIALS["ergal"], ["near:0,0,0"], [PULL])
+        stress_document(tmp_path / "empty.stl", 1e-3, named_material("ergal"), ["near:0,0,0"], [PULL])
 
 
 def test_command_line_prints_one_document_and_its_exit_code_is_the_verdict(bar):

@@ -7,10 +7,10 @@ import pytest
 
 from codesign.cli.stress import stress_document
 from codesign.cli.stress_file import describe_repair, load_file, repair_document, unit_hints
-from codesign.cli.stress_options import MATERIALS
 from codesign.errors import MeshError
 from codesign.geometry import shape
 from codesign.geometry.shape import Shape
+from codesign.parts.materials import named_material
 from codesign.parts.part import Part
 from codesign.parts.step import write_step
 from stl_files import box, stl
@@ -28,6 +28,7 @@ class Bar(Part):
 
 
 BAR = box((0, 0, 0), (40, 10, 10))
+ERGAL = named_material("ergal")
 CLAMPED = (["normal:-1,0,0"], ["normal:1,0,0: 0 0 -100"])
 
 
@@ -35,7 +36,7 @@ def test_repair_on_request_is_reported(tmp_path):
     path = stl(tmp_path / "part.stl", BAR, BAR[:1])
     with pytest.raises(MeshError, match=r"part.stl: .* triangles written twice: 1; --repair mends it"):
         load_file(path, 1e-3, repair=False)
-    document = stress_document(path, 1e-3, MATERIALS["steel_s235"], *CLAMPED, edge_length_mm=5.0, repair=True)
+    document = stress_document(path, 1e-3, named_material("steel_s235"), *CLAMPED, edge_length_mm=5.0, repair=True)
     repair = document["repair"]
     assert (repair["changed"], repair["doubled_facets"]) == (True, 1)
     assert repair["triangles"] == {"before": 13, "after": 12}
@@ -58,7 +59,9 @@ def test_no_simplify_keeps_every_edge(tmp_path):
     """A ledge of 0.04 mm, which simplification would remove."""
     path = stl(tmp_path / "part.stl", BAR, box((40, 0, 0), (60, 10, 10.04)))
     kept, gone = (
-        stress_document(path, 1e-3, MATERIALS["ergal"], *CLAMPED, edge_length_mm=10.0, repair=True, simplify=simplify)
+        stress_document(
+            path, 1e-3, named_material("ergal"), *CLAMPED, edge_length_mm=10.0, repair=True, simplify=simplify
+        )
         for simplify in (False, True)
     )
     assert kept["mesh"]["collapsed_edges"] == 0
@@ -83,10 +86,10 @@ def test_step_files_are_read_in_their_own_units(tmp_path):
 
 def test_units_that_look_wrong_are_mentioned(tmp_path):
     path = stl(tmp_path / "part.stl", box((0, 0, 0), (0.2, 0.03, 0.02)))  # metres
-    doubts = stress_document(path, 1e-3, MATERIALS["steel_s235"], *CLAMPED)["warnings"]
+    doubts = stress_document(path, 1e-3, named_material("steel_s235"), *CLAMPED)["warnings"]
     assert any("only 0.2 x 0.03 x 0.02 mm: is the file in metres (--scale 1)?" in doubt for doubt in doubts)
     assert any(" times the part, small ones are assumed" in doubt for doubt in doubts)
-    right = stress_document(path, 1.0, MATERIALS["steel_s235"], *CLAMPED)
+    right = stress_document(path, 1.0, named_material("steel_s235"), *CLAMPED)
     bent = 100 * 0.2**3 / (3 * 210e9 * 0.03 * 0.02**3 / 12)  # F L³ / (3 E I)
     assert right["max_displacement"] == pytest.approx(bent, rel=0.02)
     assert not any("--scale" in doubt for doubt in right["warnings"])

@@ -4,9 +4,10 @@ import pytest
 
 import fem_surfaces
 from codesign.cli.stress import stress_document
-from codesign.cli.stress_options import MATERIALS, find_material
+from codesign.cli.stress_options import find_material
+from codesign.parts.materials import named_material
 
-ERGAL, STEEL = MATERIALS["ergal"], MATERIALS["steel_s235"]
+ERGAL, STEEL = named_material("ergal"), named_material("steel_s235")
 WALLS = ["normal:-1,0,0", "normal:1,0,0", "normal:0,1,0", "normal:0,-1,0"]
 
 

@@ -8,9 +8,10 @@ import pytest
 
 import fem_surfaces
 from codesign.cli.stress import stress_document
-from codesign.cli.stress_options import MATERIALS, StressInputError
+from codesign.cli.stress_options import StressInputError
+from codesign.parts.materials import named_material
 
-STEEL = MATERIALS["steel_s235"]
+STEEL = named_material("steel_s235")
 END, PULL = "normal:-1,0,0", "normal:1,0,0: 100 0 0"
 
 

@@ -8,11 +8,11 @@ import pytest
 
 from codesign import fem
 from codesign.cli.stress import stress_document
-from codesign.cli.stress_options import MATERIALS
 from codesign.errors import CodesignError
 from codesign.fem.holes import cylinder_of, holes
 from codesign.geometry import Shape, box, cylinder
 from codesign.parts import Part, write_step
+from codesign.parts.materials import named_material
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def files(tmp_path_factory):
 
 
 def run(path, fix, load):
-    return stress_document(path, 1e-3, MATERIALS["ergal"], fix, load, edge_length_mm=4.0)
+    return stress_document(path, 1e-3, named_material("ergal"), fix, load, edge_length_mm=4.0)
 
 
 def test_from_a_step_file_to_a_safety_factor_by_face_names(files):

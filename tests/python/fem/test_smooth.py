@@ -11,8 +11,8 @@ import pytest
 
 from codesign import fem
 from codesign.cli.stress import stress_document
-from codesign.cli.stress_options import MATERIALS
 from codesign.errors import MeshError
+from codesign.parts.materials import named_material
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -121,7 +121,7 @@ def test_boxes_are_returned_unchanged_and_bad_arguments_refused():
 def test_stress_says_that_facets_look_round_and_curves_them_when_asked(tmp_path):
     """A rod under tension: its twelve facets have 4.5 % less area than the circle."""
     path = write_stl(tmp_path / "rod.stl", extruded([circle(4.5, 12)], 60.0))
-    arguments = (path, 1e-3, MATERIALS["ergal"], ["near:0,0,0"], ["normal:0,0,1: 0 0 1000"], 1.5)
+    arguments = (path, 1e-3, named_material("ergal"), ["near:0,0,0"], ["normal:0,0,1: 0 0 1000"], 1.5)
     literal, smooth = stress_document(*arguments), stress_document(*arguments, smooth=True)
     assert literal["smoothing"] is None
     assert smooth["facets_literal"] is None
@@ -146,7 +146,7 @@ def test_facets_are_taken_literally_if_their_smooth_surface_cannot_be_meshed(tmp
         return mesh(surface, size)
 
     monkeypatch.setattr(fem, "tetrahedralize", refuse)
-    arguments = (path, 1e-3, MATERIALS["ergal"], ["near:0,0,0"], ["normal:0,0,1: 0 0 1000"], 2.0)
+    arguments = (path, 1e-3, named_material("ergal"), ["near:0,0,0"], ["normal:0,0,1: 0 0 1000"], 2.0)
     document = stress_document(*arguments, smooth=True)
     assert "too fine" in document["smoothing"]["reason"]
     assert document["smoothing"]["facets"] == 0
@@ -197,7 +197,7 @@ BASE = ["box:-21,-31,-0.01,200,31,0.01", "box:-21,-31,14.99,200,31,15.01"]
 )
 def test_published_files_bend_like_the_true_parts(shared_data, name, fix, load, reference):
     path = shared_data / "parts" / f"{name}.stl"
-    document = stress_document(path, 1e-3, MATERIALS["ergal"], fix, [load], smooth=True)
+    document = stress_document(path, 1e-3, named_material("ergal"), fix, [load], smooth=True)
     assert document["max_displacement"] * 1e3 == pytest.approx(reference, rel=0.03)
     assert document["mesh"]["min_dihedral_deg"] > 4.0
     assert document["smoothing"]["reason"] == ""

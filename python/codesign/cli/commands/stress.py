@@ -1,4 +1,4 @@
-"""The command about any part: stress."""
+"""Commands about any part: stress, materials."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def stress(
     load: Annotated[list[str], typer.Option(metavar="'SEL: FX FY FZ'", help="Total force in N; may be repeated.")],
     scale: Annotated[float, typer.Option(help="Meters per unit of an STL file and of the selections.")] = 1e-3,
     material: Annotated[
-        str, typer.Option(help="ergal, aluminium_6061_t6, steel_s235, titanium_ti6al4v, or E_GPa,nu,yield_MPa[,kg/m3].")
+        str, typer.Option(help="A name that `codesign materials` lists, or E_GPa,nu,yield_MPa[,kg/m3].")
     ] = "ergal",
     edge_length: Annotated[
         float | None, typer.Option(metavar="MM", help="Edge length of the elements; default: from the wall thickness.")
@@ -79,3 +79,18 @@ def stress(
         print_stress(document)
     factor = document["safety_factor"]
     return 0 if factor is None or factor >= 1.0 else 1
+
+
+@commands.command(epilog="Example: `codesign materials ti-6al-4v`")
+def materials(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Everything known of one.")] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Materials that a study and `codesign stress` know by name: stiffness, strength, density, cost, source."""
+    from codesign.cli.materials import material_documents, print_materials
+
+    if as_json:
+        print_json(material_documents(name))
+    else:
+        print_materials(name)
+    return 0
