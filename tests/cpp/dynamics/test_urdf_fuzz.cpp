@@ -1,7 +1,7 @@
 // Mutated URDFs: each is either refused with a UrdfError or gives a model that can be computed
 // with. Deterministic. Environment: CODESIGN_FUZZ_RUNS, number of mutants (default: a short run);
 // CODESIGN_FUZZ_SEEDS, a folder of URDF files to mutate besides the built-in ones.
-// benchmarks/fuzz_urdf.sh runs it at length under the sanitizers.
+// benchmarks/robustness/fuzz_urdf.sh runs it at length under the sanitizers.
 
 #include <gtest/gtest.h>
 

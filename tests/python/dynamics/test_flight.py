@@ -34,7 +34,7 @@ def test_published_robot_gives_the_published_objectives(shared_data: Path, robot
     assert log.max_torque < 34.5 and log.max_com_error < 0.16
 
 
-# A sample of the 237 rows that benchmarks/reproduce_published.py keeps, over all forearm lengths, with indefinite and
+# A sample of the 237 rows that benchmarks/published/flights.py keeps, over all forearm lengths, with indefinite and
 # with definite mass matrices; the published program drops base rotations below 1e-6 rad a step, which 195 and 268 show.
 ROWS = (
     "0 66 195 268 438 490 172 323 488 114 464 280 372 236 350 231 168 257 396 391 65 355 167 491 51".split()  # noqa: SIM905

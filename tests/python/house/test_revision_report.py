@@ -1,11 +1,11 @@
-"""What benchmarks/against_revision.sh says of two sets of results."""
+"""What benchmarks/revision/against_revision.sh says of two sets of results."""
 
 import importlib.util
 import json
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[3]
-SPEC = importlib.util.spec_from_file_location("revision_report", REPOSITORY / "benchmarks" / "revision_report.py")
+SPEC = importlib.util.spec_from_file_location("revision_report", REPOSITORY / "benchmarks" / "revision" / "report.py")
 report = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(report)
 

@@ -116,7 +116,7 @@ TEST(Stl, SaysWhatIsWrongAndWhere) {
 }
 
 // Bytes changed, cut and repeated at random: each result is a surface or a MeshError.
-// CODESIGN_FUZZ_RUNS sets the number of files; benchmarks/fuzz_stl.sh runs many under the
+// CODESIGN_FUZZ_RUNS sets the number of files; benchmarks/robustness/fuzz_stl.sh runs many under the
 // sanitizers.
 TEST(Stl, SurvivesDamagedFiles) {
   std::mt19937 random(7);

@@ -1,6 +1,6 @@
 """The paper-size study from an empty cache, then again from the cache it left; where the time goes.
 
-  python benchmarks/optimizer_paper_size.py --workers 2            (25 x 40, seed 1, shipped study)
+  python benchmarks/optimizer/paper_size.py --workers 2            (25 x 40, seed 1, shipped study)
 
 The paper's chain took 216 s a design: 60 h for 1000. Needs a fresh --out folder.
 """

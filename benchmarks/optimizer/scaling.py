@@ -3,9 +3,9 @@
 Measured with evaluations that sleep, so that two cores can stand for many: what is seen is what the search, the store
 and the scheduler cost, not the evaluation. Efficiency = time all evaluations take / (workers x wall time of the run).
 
-  python benchmarks/scaling.py local          local pool, 1 … 32 workers
-  python benchmarks/scaling.py dask           Dask, 4 … 64 threads on this machine (one worker process each)
-  python benchmarks/scaling.py simulate       the barrier alone, by event simulation, up to 512 workers
+  python benchmarks/optimizer/scaling.py local          local pool, 1 … 32 workers
+  python benchmarks/optimizer/scaling.py dask           Dask, 4 … 64 threads on this machine (one worker process each)
+  python benchmarks/optimizer/scaling.py simulate       the barrier alone, by event simulation, up to 512 workers
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Loads mutated URDFs under the address, leak and undefined-behaviour sanitizers.
-# Usage: benchmarks/fuzz_urdf.sh [RUNS, default 100000] [FOLDER of further URDF files to mutate]
+# Usage: benchmarks/robustness/fuzz_urdf.sh [RUNS, default 100000] [FOLDER of further URDF files to mutate]
 set -eu
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 cmake --preset asan > /dev/null
 cmake --build --preset asan --target dynamics_test_urdf_fuzz
 export CODESIGN_FUZZ_RUNS="${1:-100000}"

@@ -1,7 +1,7 @@
 """How much of the true front NSGA-II finds: a sub-grid is swept whole, then searched with a small budget.
 
-  python benchmarks/optimizer_ground_truth.py --study ironcub --counts 14 7 5 6 --evaluations 400 --seeds 5 --workers 2
-  python benchmarks/optimizer_ground_truth.py --study smooth --counts 14 7 5 6            (analytic, a minute)
+  python benchmarks/optimizer/ground_truth.py --study ironcub --counts 14 7 5 6 --evaluations 400 --seeds 5 --workers 2
+  python benchmarks/optimizer/ground_truth.py --study smooth --counts 14 7 5 6            (analytic, a minute)
 
 Prints a line a seed: hypervolume of the front found over that of the true front, and how many of its designs were
 found. The box of the hypervolume spans all feasible designs of the sub-grid. The searches take their evaluations from

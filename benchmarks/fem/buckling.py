@@ -1,6 +1,6 @@
 """Buckling factors of the shipped parts, and of the forearm supports against CalculiX; tables of docs/fem.md.
 
-python benchmarks/fem_buckling.py
+python benchmarks/fem/buckling.py
 
 The second table needs `ccx` (Debian calculix-ccx) and gmsh, as `fem_vs_calculix.py` does; it is left out without them.
 """

@@ -1,6 +1,6 @@
 """Fly the robots of the published optimisation run and compare with the published outputs.
 
-    python benchmarks/reproduce_published.py [--data ../shared/data/published] [--rows 0 66 195] [--perturb 1e-15]
+    python benchmarks/published/flights.py [--data ../shared/data/published] [--rows 0 66 195] [--perturb 1e-15]
 
 Every row of designs.csv is remade by the authors' rule (tests/python/published_robots.py), flown on trajectory 1 with
 inertias as published, and its six `script` outputs are compared. A row is *kept* when the published flight was
@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests" / "python"))
 
 import ironcub_flight  # noqa: E402

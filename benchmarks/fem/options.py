@@ -1,6 +1,6 @@
 """Effect of the study's options, of simplified parts and of the sizes of the mesh on the stress; tables of docs/fem.md.
 
-python benchmarks/fem_options.py
+python benchmarks/fem/options.py
 """
 
 from __future__ import annotations

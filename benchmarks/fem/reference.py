@@ -2,7 +2,7 @@
 
 Reference: straight ten-node elements in two other codes, refined until converged; 250 N, E = 71.7 GPa,
 nu = 0.3. Prints a row per design and quantity: value, reference, deviation, CPU time (surface to safety factor), nodes.
-Usage: python benchmarks/fem_reference.py [--accuracy optimisation|fine] [--geometry simplified|full] [--only forearm]
+Usage: python benchmarks/fem/reference.py [--accuracy optimisation|fine] [--geometry simplified|full] [--only forearm]
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What against_revision.sh prints: ratios of CPU times, or numbers that differ.
 
-python benchmarks/revision_report.py times FILE         lines: NAME JSON, NAME one of here, revision, again
-python benchmarks/revision_report.py results HERE REVISION
+python benchmarks/revision/report.py times FILE         lines: NAME JSON, NAME one of here, revision, again
+python benchmarks/revision/report.py results HERE REVISION
 """
 
 from __future__ import annotations

@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
 # Compares what is built here with an earlier revision, on the same Python packages.
 #
-#   benchmarks/against_revision.sh REV            CPU time of each stage: median of ROUNDS (5) alternating runs, one thread,
-#                                                 ratio here / REV, and of REV against itself (what the machine's noise is)
-#   benchmarks/against_revision.sh --results REV  all numbers of ten designs and of a run of 12 x 3, bit for bit; exit code 1
-#                                                 if any differs (times, hashes and provenance apart)
+#   benchmarks/revision/against_revision.sh REV
+#       CPU time of each stage: median of ROUNDS (5) alternating runs, one thread, ratio here / REV, and of REV against
+#       itself (what the machine's noise is)
+#   benchmarks/revision/against_revision.sh --results REV
+#       all numbers of ten designs and of a run of 12 x 3, bit for bit; exit code 1 if any differs (times, hashes and
+#       provenance apart)
 #
 # REV is built in build/revisions/COMMIT, with ccache if it is there. PYTHON: the environment to compare (.venv/bin/python).
 # Leave the sources alone while it runs: workers that load another program than the run are refused.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 kind=times
 if [ "${1:-}" = --results ]; then kind=results; shift; fi
 [ $# = 1 ] || { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" | head -n -1; exit 2; }
@@ -42,12 +44,12 @@ declare -A interpreter=([here]=$python [revision]=$place/venv/bin/python [again]
 job() { # NAME ARGUMENTS...: from an empty folder, so that no source tree is on the path
   local name=$1
   shift
-  (cd "$work" && CODESIGN_CACHE=$work/cache-$name "${interpreter[$name]}" -P "$OLDPWD/benchmarks/revision_job.py" "$@")
+  (cd "$work" && CODESIGN_CACHE=$work/cache-$name "${interpreter[$name]}" -P "$OLDPWD/benchmarks/revision/job.py" "$@")
 }
 
 if [ $kind = results ]; then
   for name in here revision; do job $name results "$work/$name.json"; done
-  "$python" benchmarks/revision_report.py results "$work/here.json" "$work/revision.json"
+  "$python" benchmarks/revision/report.py results "$work/here.json" "$work/revision.json"
 else
   order=(here revision again)
   for ((round = 0; round < ${ROUNDS:-5}; round++)); do
@@ -58,5 +60,5 @@ else
     echo "round $((round + 1)) of ${ROUNDS:-5}" >&2
   done
   cat "$work"/{here,revision}.places >&2
-  "$python" benchmarks/revision_report.py times "$work/times"
+  "$python" benchmarks/revision/report.py times "$work/times"
 fi

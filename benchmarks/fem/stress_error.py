@@ -1,6 +1,6 @@
 """Error estimate of the peak stress against the true error, on designs spread over the grid; table of docs/fem.md.
 
-python benchmarks/stress_error.py [every k-th design, 1 if omitted] [factor on the analysed edge lengths]
+python benchmarks/fem/stress_error.py [every k-th design, 1 if omitted] [factor on the analysed edge lengths]
 
 True error: difference from the fine mesh with half its edge length around the peak.
 """

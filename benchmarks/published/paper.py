@@ -1,6 +1,6 @@
 """Writes docs/paper.md: the paper's study and results beside ours.
 
-  python benchmarks/paper.py --run runs/paper --published ../shared/data/published
+  python benchmarks/published/paper.py --run runs/paper --published ../shared/data/published
 
 Runs the study at the paper's size if there is no such run yet, validates chosen designs on the five other trajectories,
 confirms them with full parts and fine meshes, flies the published robots as they are, re-evaluates the published best
@@ -43,7 +43,7 @@ PAPER_YIELD, STATED_YIELD = 524.0, 462.0  # MPa: in the published safety factors
 ROBOTS = {"Original": "base_robot.urdf", "Optim1": "optim1.urdf", "Optim3": "optim3.urdf"}
 PUBLISHED_THETA = {"Original": (15, 42, 80, 108), "Optim1": (1, 48, 88, 50), "Optim3": (1, 48, 100, 130)}
 SHOWN = ("front", "chosen", "validation", "stress", "snapshots", "parts", "convergence")
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True)

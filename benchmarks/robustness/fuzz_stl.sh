@@ -1,8 +1,8 @@
 #!/bin/sh
 # Reads damaged STL files under the address, leak and undefined-behaviour sanitizers.
-# Usage: benchmarks/fuzz_stl.sh [FILES, default 1000000]
+# Usage: benchmarks/robustness/fuzz_stl.sh [FILES, default 1000000]
 set -eu
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 cmake --preset asan > /dev/null
 cmake --build --preset asan --target fem_test_stl
 export CODESIGN_FUZZ_RUNS="${1:-1000000}"

@@ -1,6 +1,6 @@
 """Builds both parts on their whole grids and checks every surface; prints the table kept in docs/parts.md.
 
-python benchmarks/parts_grid.py [every k-th design, 1 if omitted]
+python benchmarks/fem/parts_grid.py [every k-th design, 1 if omitted]
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The box QP solver: certificates on hard problems, time on the problems of the flight loop.
 
-    python benchmarks/box_qp.py [--problems 10000] [--repeats 7]
+    python benchmarks/dynamics/box_qp.py [--problems 10000] [--repeats 7]
 
 1. Random and adversarial problems of 1 to 60 variables (condition numbers to 1e10, equal and infinite bounds,
    degenerate vertices), each solved cold and warm-started from another problem's working set: the KKT residual is
@@ -23,7 +23,7 @@ import numpy as np
 import proxsuite
 import quadprog
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests" / "python"))
 
 import ironcub_flight  # noqa: E402

@@ -1,6 +1,6 @@
 """Parts against the authors' 401 designs and STL files: prints the tables kept in docs/parts.md.
 
-python benchmarks/parts_against_published.py [folder of the reference data]
+python benchmarks/published/parts.py [folder of the reference data]
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from codesign.parts.part import EXPORT_RESOLUTION, Part
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 MOMENTS = ("ixx", "iyy", "izz")
 
 Row = dict[str, float]

@@ -1,6 +1,6 @@
 """How the objectives of a flight converge: `rms` family, standard study, repaired inertias, trajectory 1.
 
-    python benchmarks/flight_convergence.py [--control-step 0.004]
+    python benchmarks/dynamics/flight_convergence.py [--control-step 0.004]
 
 Two statements, because the controller is a sampled one. *Loop*: plant, jets, references and controller at steps of
 8, 4, 2 and 1 ms, starting without the published free fall of one step (whose velocity error m g h is part of the
@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests" / "python"))
 
 import ironcub_flight  # noqa: E402

@@ -1,6 +1,6 @@
 """Time of a 42 s flight of the standard study, and where it goes.
 
-    python benchmarks/flight.py [--repeats 15]
+    python benchmarks/dynamics/flight.py [--repeats 15]
 
 CPU time of simulate_flight on one core, best of repeats. The phases are wall times inside the loop, each the least of
 all flights: on a busy machine their sum is above the CPU time, their shares still tell. Needs a release build.
@@ -11,7 +11,7 @@ import sys
 import time
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "tests" / "python"))
 
 import ironcub_flight  # noqa: E402

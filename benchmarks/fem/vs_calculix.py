@@ -1,6 +1,6 @@
 """Surface to peak stress against gmsh and CalculiX: the same parts, sizes, supports and loads; tables of docs/fem.md.
 
-python benchmarks/fem_vs_calculix.py
+python benchmarks/fem/vs_calculix.py
 
 CPU seconds (children included), one thread. CalculiX (`ccx`, Debian calculix-ccx) solves C3D10 with its default
 direct solver; gmsh meshes the part's exact STEP file. Nodal forces are this project's, so that both solve one system.
@@ -37,7 +37,7 @@ from codesign.studies.ironcub.forearm import ForearmJetSupport
 Array = NDArray[np.float64]
 native: Any = _core.fem
 MILLI, MEGA = 1e-3, 1e6
-REFERENCE = {"jetpack_bracket": 4.61, "forearm_support": 33.24}  # MPa, benchmarks/stress_error.py
+REFERENCE = {"jetpack_bracket": 4.61, "forearm_support": 33.24}  # MPa, benchmarks/fem/stress_error.py
 
 
 @dataclass

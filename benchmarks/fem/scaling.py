@@ -1,6 +1,6 @@
 """Time and memory of one static solution against the number of unknowns; plot docs/figures/fem_scaling.png.
 
-python benchmarks/fem_scaling.py [largest number of unknowns, 300000 if omitted]
+python benchmarks/fem/scaling.py [largest number of unknowns, 300000 if omitted]
 
 The forearm support (50, 88) with ever smaller elements; CPU seconds, one thread, mesh given.
 """
@@ -19,7 +19,7 @@ from codesign import _core, fem
 from codesign.chain.chain import stress_settings
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
-FIGURE = Path(__file__).parents[1] / "docs" / "figures" / "fem_scaling.png"
+FIGURE = Path(__file__).parents[2] / "docs" / "figures" / "fem_scaling.png"
 SCALES = (2.2, 1.1, 0.7, 0.5, 0.4, 0.33, 0.28)
 
 

@@ -1,7 +1,7 @@
 """The jobs that against_revision.sh has several revisions of codesign do; run by the Python of each.
 
-python benchmarks/revision_job.py times            CPU seconds of each stage, one JSON document
-python benchmarks/revision_job.py results FILE     numbers of ten designs and of a small run, as JSON
+python benchmarks/revision/job.py times            CPU seconds of each stage, one JSON document
+python benchmarks/revision/job.py results FILE     numbers of ten designs and of a small run, as JSON
 
 Revisions differ in where things are, so this file looks for them in the places that they have had.
 """
