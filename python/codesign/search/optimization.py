@@ -63,9 +63,9 @@ def optimize(
     Args:
         study: a loaded study, or a shipped study's name or the path of a study file.
         out: folder of the run; must not hold one yet.
-        population, generations, seed, algorithm: as in the study's [optimizer] unless given.
+        population, generations, seed, algorithm: as in the study's [optimizer] unless given; the seed decides
+            everything that is random.
         evaluations: the budget itself, instead of population times generations.
-        seed: decides everything that is random.
         algorithm: nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an installed package gives in its
             entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
         start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
@@ -84,10 +84,8 @@ def optimize(
     optimizer = study.optimizer
     size = optimizer.population if population is None else population
     count = optimizer.generations if generations is None else generations
-    if algorithm is None:
-        algorithm = _own_algorithm(study)
     settings = Settings(
-        algorithm=algorithm,
+        algorithm=_own_algorithm(study) if algorithm is None else algorithm,
         population=size,
         evaluations=size * count if evaluations is None else evaluations,
         crossover_probability=optimizer.crossover_probability,

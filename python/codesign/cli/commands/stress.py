@@ -11,6 +11,17 @@ from codesign.cli.console import print_json, print_stress
 from codesign.cli.options import JsonOption
 
 commands = typer.Typer()
+ExclusionOption = Annotated[
+    float | None,
+    typer.Option(
+        metavar="MM",
+        help="Ignore stress peaks within this distance of borders of clamps; default: a fifth of the wall.",
+    ),
+]
+RepairOption = Annotated[
+    bool,
+    typer.Option("--repair", help="Make one solid of a file with doubled or turned facets, gaps, overlapping bodies."),
+]
 
 
 @commands.command(
@@ -29,22 +40,11 @@ def stress(
     ] = None,
     vtu: Annotated[Path | None, typer.Option(help="Where to write displacement and stress, for ParaView.")] = None,
     png: Annotated[Path | None, typer.Option(help="Where to write a picture of the stressed part.")] = None,
-    exclusion: Annotated[
-        float | None,
-        typer.Option(
-            metavar="MM",
-            help="Ignore stress peaks within this distance of borders of clamps; default: a fifth of the wall.",
-        ),
-    ] = None,
+    exclusion: ExclusionOption = None,
     smooth: Annotated[
         bool, typer.Option("--smooth", help="The file is a coarse tessellation of curved faces: curve its facets back.")
     ] = False,
-    repair: Annotated[
-        bool,
-        typer.Option(
-            "--repair", help="Make one solid of a file with doubled or turned facets, gaps, overlapping bodies."
-        ),
-    ] = False,
+    repair: RepairOption = False,
     no_simplify: Annotated[
         bool, typer.Option("--no-simplify", help="Keep edges that are tiny (0.05 mm) beside the elements.")
     ] = False,
