@@ -12,6 +12,7 @@
 #include "fem/mesh/tet_topology.hpp"
 #include "fem/meshing/size_field.hpp"
 #include "fem/meshing/tet_mesher.hpp"
+#include "fem/meshing/wall_size.hpp"
 #include "fem/smoothing/surface_smooth.hpp"
 #include "fem/surface/bodies.hpp"
 #include "fem/surface/mass_properties.hpp"
@@ -229,6 +230,7 @@ min(base, size + growth * max(0, distance - radius)) over all sources; metres.)"
            "base"_a, "sources"_a = std::vector<SizeSource>{})
       .def_readonly("base", &SizeField::base)
       .def_readonly("sources", &SizeField::sources)
+      .def_property_readonly("smallest", &smallest_size, "m, the smallest edge length anywhere")
       .def(
           "__call__",
           [](const SizeField& field, const Points& points) {
@@ -273,7 +275,18 @@ void bind_report(py::module_& m) {
                     "m, the farthest that a point of the surface moved for that")
       .def_readonly("crumbs", &MeshReport::crumbs,
                     "elements removed that hung on the mesh by a point or an edge")
-      .def_readonly("peeled", &MeshReport::peeled, "flat boundary elements removed");
+      .def_readonly("peeled", &MeshReport::peeled, "flat boundary elements removed")
+      .def_readonly("refinements", &MeshReport::refinements,
+                    "rounds of smaller elements that the surface's topology asked for")
+      .def_readonly("genus", &MeshReport::genus,
+                    "of each closed piece of the boundary, the same as of the surface")
+      .def_property_readonly(
+          "surface_distance",
+          [](const MeshReport& report) {
+            return report.surface_distance < 0.0 ? std::optional<double>()
+                                                 : std::optional(report.surface_distance);
+          },
+          "m, largest between boundary and surface, both ways; None if not measured");
 }
 
 void bind_tet_mesh(py::module_& m) {
@@ -307,14 +320,20 @@ Raises:
       });
 }
 
-TetMesh make_tets(const SurfaceMesh& surface, const std::variant<double, SizeField>& edge_length,
+SizeField default_size(const SurfaceMesh& surface, std::optional<double> edge_length) {
+  return wall_size(surface, edge_length ? *edge_length : mean_wall_size(surface));
+}
+
+TetMesh make_tets(const SurfaceMesh& surface,
+                  const std::optional<std::variant<double, SizeField>>& edge_length,
                   double feature_angle_deg, double simplify, double facet_distance,
                   double facet_angle_deg, double radius_edge, double sliver_angle_deg,
                   double flat_angle_deg, bool curved, double time_limit, std::size_t max_vertices,
                   bool check_intersections) {
-  const SizeField size = std::holds_alternative<double>(edge_length)
-                             ? SizeField{std::get<double>(edge_length), {}}
-                             : std::get<SizeField>(edge_length);
+  const SizeField size = !edge_length ? default_size(surface, {})
+                         : std::holds_alternative<double>(*edge_length)
+                             ? SizeField{std::get<double>(*edge_length), {}}
+                             : std::get<SizeField>(*edge_length);
   MeshOptions options;
   options.feature_angle = feature_angle_deg * kDegree;
   options.simplify = simplify;
@@ -332,7 +351,23 @@ TetMesh make_tets(const SurfaceMesh& surface, const std::variant<double, SizeFie
 
 void bind_mesher(py::module_& m) {
   const MeshOptions defaults;
-  m.def("tetrahedralize", &make_tets, "surface"_a, "edge_length"_a, py::kw_only(),
+  m.def("default_size", &default_size, "surface"_a, "edge_length"_a = py::none(),
+        py::call_guard<py::gil_scoped_release>(),
+        R"(Edge length that follows the local wall thickness.
+
+Where walls or gaps between walls are thin, 0.9 of their thickness; elsewhere `edge_length`; graded
+between. Never below a twentieth of `edge_length`, nor so small that more than about 250 000
+elements would be needed.
+
+Args:
+    surface: closed, outward-oriented.
+    edge_length: m, in thick places; from the mean wall thickness and at most about 30 000 elements
+        if absent.
+
+Raises:
+    MeshError: the surface bounds no solid.
+    ValueError: edge_length is not positive.)");
+  m.def("tetrahedralize", &make_tets, "surface"_a, "edge_length"_a = py::none(), py::kw_only(),
         "feature_angle_deg"_a = 40.0, "simplify"_a = defaults.simplify,
         "facet_distance"_a = defaults.facet_distance, "facet_angle_deg"_a = 25.0,
         "radius_edge"_a = defaults.radius_edge, "sliver_angle_deg"_a = 12.0,
@@ -347,7 +382,8 @@ carries the face of the surface it lies on. The same input gives the same mesh.
 
 Args:
     surface: closed, outward-oriented, one solid.
-    edge_length: m, or a SizeField.
+    edge_length: m, or a SizeField; default_size(surface) if absent. Elements become smaller
+        where the boundary would otherwise have another topology than the surface.
     feature_angle_deg: edges sharper than this are kept.
     simplify: points of the surface may move this far [m] to get rid of tiny edges and ledges;
         never more than 0.0005 of its extent and 0.1 of the smallest edge length.
@@ -362,8 +398,8 @@ Args:
     check_intersections: look for triangles that cross each other first.
 
 Raises:
-    MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces or of
-        wrong volume; a limit was reached.
+    MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces, of
+        another topology or wrong volume; a limit was reached.
     ValueError: an option out of range.)");
 }
 

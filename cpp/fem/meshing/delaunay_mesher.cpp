@@ -9,7 +9,6 @@
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
 #include <CGAL/make_mesh_3.h>
-#include <time.h>
 
 #include <algorithm>
 #include <limits>
@@ -23,6 +22,7 @@
 #include "errors.hpp"
 #include "fem/mesh/tet_neighbours.hpp"
 #include "fem/meshing/feature_curve.hpp"
+#include "fem/meshing/thread_clock.hpp"
 #include "fem/surface/solid_oracle.hpp"
 
 namespace codesign::fem {
@@ -190,12 +190,6 @@ using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, int, int>
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 using Control = CGAL::parameters::internal::Mesh_3_options;
 
-double thread_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 // Stops a run that takes too long. The mesher asks for the wanted size in all of its loops, so the
 // size field is where the clock is read.
 struct Watch {
@@ -322,9 +316,9 @@ LinearTets extract(const Complex& complex, const Patches& patches, const SolidOr
 
 }  // namespace
 
-LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
-                         const std::vector<FeatureLine>& lines, const SolidOracle& oracle,
-                         const SizeField& size, const MeshOptions& options) {
+LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
+                         const MeshOptions& options, bool separate_patches) {
+  const auto& [surface, simplified, topology, patches, lines, oracle] = prepared;
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh in every run
   Watch watch{thread_seconds() + options.time_limit, options.time_limit};
   const SizingField length{&size, &watch, 1.0};
@@ -336,6 +330,8 @@ LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
     const Criteria criteria(
         set::edge_size = length, set::facet_size = length,
         set::facet_angle = options.facet_angle / kDegree, set::facet_distance = distance,
+        set::facet_topology = separate_patches ? CGAL::FACET_VERTICES_ON_SAME_SURFACE_PATCH
+                                               : CGAL::FACET_VERTICES_ON_SURFACE,
         set::cell_radius_edge_ratio = options.radius_edge, set::cell_size = length);
     Control control;
     control.maximal_number_of_vertices = options.max_vertices;

@@ -2,16 +2,15 @@
 
 #include "fem/meshing/linear_tets.hpp"
 #include "fem/meshing/mesh_options.hpp"
+#include "fem/meshing/prepared_surface.hpp"
 #include "fem/meshing/size_field.hpp"
-#include "fem/surface/solid_oracle.hpp"
-#include "fem/surface/surface_features.hpp"
 
 namespace codesign::fem {
 
-// Delaunay refinement of the solid inside the surface; sides are labelled by patch. Throws
-// MeshError on the limits of `options` and if the refinement breaks down.
-LinearTets delaunay_mesh(const SurfaceMesh& surface, const Patches& patches,
-                         const std::vector<FeatureLine>& lines, const SolidOracle& oracle,
-                         const SizeField& size, const MeshOptions& options);
+// Delaunay refinement of the solid inside the surface; sides are labelled by patch. With
+// `separate_patches`, sides with corners inside two patches are refined too: they stand across a
+// thin wedge. Throws MeshError on the limits of `options` and if the refinement breaks down.
+LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
+                         const MeshOptions& options, bool separate_patches);
 
 }  // namespace codesign::fem

@@ -18,6 +18,8 @@ struct MeshOptions {
   double time_limit = 60.0;               // processor time of this thread, s
   std::size_t max_vertices = 400'000;     // corner nodes
   bool check_intersections = true;        // look for triangles that cross each other first
+  int topology_rounds = 5;                // of refinement where another topology was found
+  bool measure_distance = true;           // between boundary and surface, for the report
 };
 
 }  // namespace codesign::fem

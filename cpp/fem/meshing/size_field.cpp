@@ -43,12 +43,14 @@ double size_at(const SizeField& field, const Eigen::Vector3d& p) {
     const double distance = std::sqrt(squared_distance(source.points, p));
     size = std::min(size, source.size + source.growth * std::max(0.0, distance - source.radius));
   }
+  for (const auto& wall : field.walls) size = wall->size_at(p, size);
   return size;
 }
 
 double smallest_size(const SizeField& field) {
   double size = field.base;
   for (const SizeSource& source : field.sources) size = std::min(size, source.size);
+  for (const auto& wall : field.walls) size = std::min(size, wall->smallest());
   return size;
 }
 

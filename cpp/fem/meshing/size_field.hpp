@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
+#include "fem/meshing/size_points.hpp"
 #include "fem/surface/surface_mesh.hpp"
 
 namespace codesign::fem {
@@ -15,10 +17,12 @@ struct SizeSource {
   double radius;  // m
 };
 
-// Edge length s(x) = min(base, size + growth · max(0, distance - radius)) over all sources.
+// Edge length s(x) = min(base, size + growth · max(0, distance - radius)) over all sources, and the
+// edge lengths that thin walls ask for.
 struct SizeField {
   double base;  // m
   std::vector<SizeSource> sources;
+  std::vector<std::shared_ptr<const SizePoints>> walls = {};
 };
 
 // Throws std::invalid_argument: base or a size not positive, growth or radius negative, no points.

@@ -12,19 +12,15 @@
 #include "fem/meshing/curved_edges.hpp"
 #include "fem/meshing/delaunay_mesher.hpp"
 #include "fem/meshing/linear_tets.hpp"
+#include "fem/meshing/prepared_surface.hpp"
 #include "fem/meshing/tet_improve.hpp"
-#include "fem/surface/bodies.hpp"
-#include "fem/surface/solid_oracle.hpp"
-#include "fem/surface/surface_check.hpp"
-#include "fem/surface/surface_features.hpp"
-#include "fem/surface/surface_simplify.hpp"
+#include "fem/meshing/prepared_surface.hpp"
+#include "fem/meshing/tet_improve.hpp"
+#include "fem/meshing/topology_keeper.hpp"
 
 namespace codesign::fem {
 namespace {
 
-// Surfaces are never simplified by more than these parts of their extent and of the smallest size.
-constexpr double kOfExtent = 5e-4;
-constexpr double kOfSize = 0.1;
 constexpr double kAreaSlack = 0.25;  // of the area of a face: beyond that, labels are wrong
 constexpr double kCrumb = 1e-4;      // pieces smaller than this part of the mesh are dropped
 constexpr double kStraightAngle = 168.0 * kDegree;
@@ -41,6 +37,7 @@ void check_options(const MeshOptions& options) {
   require(options.facet_angle >= 0.0 && options.facet_angle <= 30.0 * kDegree,
           "facet_angle: at most 30 degrees, or the refinement may not end");
   require(options.radius_edge >= 2.0, "radius_edge: at least 2, or the refinement may not end");
+  require(options.topology_rounds >= 0, "topology_rounds: must not be negative");
   require(options.time_limit > 0.0, "time_limit: must be positive");
 }
 
@@ -85,8 +82,7 @@ void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, cons
                            const MeshOptions& options) {
   if (const int pieces = count_pieces(mesh); pieces != 1)
     throw MeshError("the mesh falls into " + std::to_string(pieces) +
-                    " pieces: the surface bounds several solids, or an edge length larger than a "
-                    "thin wall tore it");
+                    " pieces: the surface bounds several solids");
   const MeshQuality quality = measure_quality(mesh);
   if (!(quality.min_dihedral > 0.0))
     throw MeshError("tetrahedron " + std::to_string(quality.worst_tet) + " of the mesh is flat");
@@ -105,34 +101,41 @@ void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, cons
   check_face_areas(mesh, surface);
 }
 
+// One mesh at the given size; boundary_face holds patches.
+TetMesh mesh_once(const PreparedSurface& prepared, const SizeField& size,
+                  const MeshOptions& options, bool separate_patches) {
+  LinearTets tets = delaunay_mesh(prepared, size, options, separate_patches);
+  if (tets.tets.empty()) throw MeshError("the mesh is empty");
+  const int crumbs = remove_crumbs(tets, kCrumb);
+  const int peeled = peel_flat_tets(tets, options.flat_angle, kStraightAngle);
+  improve_tets(tets, options.sliver_angle, prepared.oracle);
+  TetMesh mesh = to_quadratic(tets, prepared.surface.face_names);
+  mesh.report = {prepared.simplified.collapsed, prepared.simplified.distance, crumbs, peeled};
+  return mesh;
+}
+
 }  // namespace
 
 TetMesh tetrahedralize(const SurfaceMesh& input, const SizeField& size,
                        const MeshOptions& options) {
   check_options(options);
   check_size_field(size);
-  check_surface(input);
-  SurfaceMesh surface = input;
-  const double tolerance =
-      std::min({options.simplify, kOfExtent * extent(input.points), kOfSize * smallest_size(size)});
-  const SimplifyReport simplified =
-      options.check_intersections
-          ? simplify_without_crossing(surface, tolerance, options.feature_angle)
-          : simplify_surface(surface, tolerance, options.feature_angle);
-  const Patches patches = find_patches(surface, options.feature_angle);
-  check_one_body(surface, patches);
-  const std::vector<FeatureLine> lines = find_feature_lines(surface, patches);
-  const SolidOracle oracle(surface, patches.of_triangle);
-  LinearTets tets = delaunay_mesh(surface, patches, lines, oracle, size, options);
-  if (tets.tets.empty()) throw MeshError("the mesh is empty");
-  const int crumbs = remove_crumbs(tets, kCrumb);
-  const int peeled = peel_flat_tets(tets, options.flat_angle, kStraightAngle);
-  improve_tets(tets, options.sliver_angle, oracle);
-  TetMesh mesh = to_quadratic(tets, surface.face_names);
-  mesh.report = {simplified.collapsed, simplified.distance, crumbs, peeled};
-  if (options.curved) curve_edges(mesh, mesh.boundary_face, surface, lines, oracle);
-  for (int& label : mesh.boundary_face) label = patches.face[static_cast<std::size_t>(label)];
-  check_against_surface(mesh, surface, size, options);
+  const PreparedSurface prepared = prepare_surface(input, size, options);
+  TopologyKeeper keeper(prepared, size, options);
+  TetMesh mesh;
+  do {
+    try {
+      mesh = mesh_once(prepared, keeper.size(), keeper.options(), keeper.separate_patches());
+    } catch (const MeshError& error) {
+      keeper.refuse(error.what());
+    }
+  } while (!keeper.accepts(mesh));
+  if (options.curved)
+    curve_edges(mesh, mesh.boundary_face, prepared.surface, prepared.lines, prepared.oracle);
+  for (int& label : mesh.boundary_face)
+    label = prepared.patches.face[static_cast<std::size_t>(label)];
+  check_against_surface(mesh, prepared.surface, keeper.size(), options);
+  keeper.report(mesh);
   return mesh;
 }
 

@@ -189,6 +189,26 @@ std::optional<SolidOracle::Hit> SolidOracle::hit(const Vector3d& a, const Vector
   return found;
 }
 
+std::optional<SolidOracle::Hit> SolidOracle::first_hit(const Vector3d& a, const Vector3d& b,
+                                                       int except) const {
+  if (a == b) return {};
+  const Ray ray(a, b);
+  std::optional<Hit> found;
+  double nearest = kInfinity;
+  traverse([&](const Vector3d& lower, const Vector3d& upper) { return ray.enters(lower, upper); },
+           [&](std::size_t i) {
+             Vector3d point;
+             if (order_[i] == except || !ray.crosses(corners_[i].x, point)) return false;
+             const double d = (point - a).squaredNorm();
+             if (d < nearest) {
+               nearest = d;
+               found = Hit{point, order_[i]};
+             }
+             return false;
+           });
+  return found;
+}
+
 std::optional<SolidOracle::Piece> SolidOracle::clip(const Vector3d& base, const Vector3d& direction,
                                                     double first, double last) const {
   const Vector3d margin = Vector3d::Constant(0.01 * (upper() - lower()).norm());
@@ -267,6 +287,23 @@ SolidOracle::Hit SolidOracle::nearest(const Vector3d& p, int group) const {
                distance = d;
                best = {point, order_[i]};
              }
+             return false;
+           });
+  return best;
+}
+
+std::optional<SolidOracle::Hit> SolidOracle::nearest_where(
+    const Vector3d& p, double within, const std::function<bool(int)>& accepted) const {
+  std::optional<Hit> best;
+  double distance = within * within;
+  traverse([&](const Vector3d& lower,
+               const Vector3d& upper) { return squared_distance(p, lower, upper) < distance; },
+           [&](std::size_t i) {
+             const Vector3d point = nearest_in_triangle(p, corners_[i].x);
+             const double d = (point - p).squaredNorm();
+             if (!(d < distance) || !accepted(group_[i])) return false;
+             distance = d;
+             best = Hit{point, order_[i]};
              return false;
            });
   return best;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,10 @@ class SolidOracle {
   // always the same one.
   std::optional<Hit> hit(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
+  // The first such point from a on, leaving out triangle `except` (-1: none).
+  std::optional<Hit> first_hit(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                               int except) const;
+
   // The part within the (slightly enlarged) bounding box of the line base + s · direction, from
   // `first` to `last`, which may be infinite; empty if it misses the box.
   struct Piece {
@@ -42,6 +47,10 @@ class SolidOracle {
 
   // The nearest point of the triangles of one group; group -1 stands for all.
   Hit nearest(const Eigen::Vector3d& p, int group) const;
+
+  // The nearest point closer than `within` of the triangles whose group is accepted, if any.
+  std::optional<Hit> nearest_where(const Eigen::Vector3d& p, double within,
+                                   const std::function<bool(int group)>& accepted) const;
 
   const Eigen::Vector3d& lower() const { return nodes_.front().lower; }
   const Eigen::Vector3d& upper() const { return nodes_.front().upper; }

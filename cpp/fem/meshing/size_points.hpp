@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace codesign::fem {
+
+// Many points with an edge length each, which grows with the distance from the point: the edge
+// length anywhere is the smallest of them all. Points sit in a tree of boxes.
+class SizePoints {
+ public:
+  // `points` and `sizes` [m] of equal, positive length; growth: per metre of distance.
+  SizePoints(std::vector<Eigen::Vector3d> points, std::vector<double> sizes, double growth);
+
+  // The edge length at p, or `cap` if that is smaller. [m]
+  double size_at(const Eigen::Vector3d& p, double cap) const;
+
+  double smallest() const { return nodes_.front().smallest; }
+
+ private:
+  struct Node {
+    Eigen::Vector3d lower, upper;
+    double smallest;  // edge length of its points
+    int first;        // inner: index of the second child (the first one follows); leaf: first point
+    int count;        // leaf: number of points; inner: 0
+  };
+
+  void build(std::vector<int>& order, int first, int last,
+             const std::vector<Eigen::Vector3d>& points, const std::vector<double>& sizes);
+
+  std::vector<Node> nodes_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<double> sizes_;
+  double growth_;
+};
+
+}  // namespace codesign::fem

@@ -1,0 +1,104 @@
+#include "fem/meshing/surface_match.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstddef>
+
+namespace codesign::fem {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kOffPatch = 0.15;  // of an edge between two patches, relative to its length
+constexpr double kAcross = 0.3;     // cosine of a side's normal and that of the surface beside it
+
+Vector3d node(const TetMesh& mesh, int i) { return mesh.nodes.row(i).transpose(); }
+
+// The surface whose triangles are the corner triangles of the boundary.
+SurfaceMesh boundary_surface(const TetMesh& mesh) {
+  SurfaceMesh surface{mesh.nodes, boundary_triangles(mesh), {}, {""}};
+  surface.face.assign(static_cast<std::size_t>(surface.triangles.rows()), 0);
+  return surface;
+}
+
+// The boundary with its mid-edge nodes: four triangles a side.
+SurfaceMesh curved_boundary(const TetMesh& mesh) {
+  constexpr int kParts[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  SurfaceMesh surface{mesh.nodes, Triangles(4 * mesh.boundary.rows(), 3), {}, {""}};
+  for (Eigen::Index i = 0; i < mesh.boundary.rows(); ++i)
+    for (int part = 0; part < 4; ++part)
+      for (int k = 0; k < 3; ++k)
+        surface.triangles(4 * i + part, k) = mesh.boundary(i, kParts[part][k]);
+  surface.face.assign(static_cast<std::size_t>(surface.triangles.rows()), 0);
+  return surface;
+}
+
+void add_edges_off_patches(const TetMesh& mesh, const Triangles& triangles,
+                           const SolidOracle& oracle, std::vector<Vector3d>& places) {
+  const Neighbours neighbours = triangle_neighbours(triangles);
+  for (std::size_t t = 0; t < neighbours.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int other = neighbours[t][static_cast<std::size_t>(k)];
+      if (other < static_cast<int>(t)) continue;
+      const int p = mesh.boundary_face[t], q = mesh.boundary_face[static_cast<std::size_t>(other)];
+      if (p == q) continue;
+      const auto row = static_cast<Eigen::Index>(t);
+      const Vector3d a = node(mesh, triangles(row, k)), b = node(mesh, triangles(row, (k + 1) % 3));
+      const Vector3d middle = 0.5 * (a + b);
+      const double off = std::max((oracle.nearest(middle, p).point - middle).norm(),
+                                  (oracle.nearest(middle, q).point - middle).norm());
+      if (off > kOffPatch * (b - a).norm()) places.push_back(middle);
+    }
+}
+
+void add_sides_across(const SurfaceMesh& boundary, const SurfaceMesh& surface,
+                      const SolidOracle& oracle, std::vector<Vector3d>& places) {
+  for (Eigen::Index t = 0; t < boundary.triangles.rows(); ++t) {
+    const Vector3d centre =
+        (corner(boundary, t, 0) + corner(boundary, t, 1) + corner(boundary, t, 2)) / 3.0;
+    const int nearest = oracle.nearest(centre, -1).triangle;
+    if (triangle_normal(boundary, t).dot(triangle_normal(surface, nearest)) < kAcross)
+      places.push_back(centre);
+  }
+}
+
+}  // namespace
+
+Triangles boundary_triangles(const TetMesh& mesh) { return mesh.boundary.leftCols<3>(); }
+
+SurfaceDistance surface_distance(const TetMesh& mesh, const SurfaceMesh& surface,
+                                 const SolidOracle& oracle) {
+  SurfaceDistance farthest{0.0, oracle.lower()};
+  const auto look = [&](const Vector3d& p, const SolidOracle& other) {
+    const double distance = (other.nearest(p, -1).point - p).norm();
+    if (distance > farthest.distance) farthest = {distance, p};
+  };
+  const SurfaceMesh boundary = curved_boundary(mesh);
+  const SolidOracle back(boundary, boundary.face);
+  std::vector<int> nodes(mesh.boundary.data(), mesh.boundary.data() + mesh.boundary.size());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  for (const int i : nodes) look(node(mesh, i), oracle);
+  for (Eigen::Index i = 0; i < surface.points.rows(); ++i)
+    look(surface.points.row(i).transpose(), back);
+  const auto middles = [&](const SurfaceMesh& from, const SolidOracle& to) {
+    for (Eigen::Index t = 0; t < from.triangles.rows(); ++t)
+      look((corner(from, t, 0) + corner(from, t, 1) + corner(from, t, 2)) / 3.0, to);
+  };
+  middles(boundary, oracle);
+  middles(surface, back);
+  return farthest;
+}
+
+std::vector<Vector3d> find_mismatches(const TetMesh& mesh, const SurfaceMesh& surface,
+                                      const SolidOracle& oracle) {
+  std::vector<Vector3d> places;
+  const SurfaceMesh boundary = boundary_surface(mesh);
+  for (const int i : non_manifold_points(boundary.triangles)) places.push_back(node(mesh, i));
+  add_edges_off_patches(mesh, boundary.triangles, oracle, places);
+  add_sides_across(boundary, surface, oracle, places);
+  if (places.empty()) places.push_back(surface_distance(mesh, surface, oracle).place);
+  return places;
+}
+
+}  // namespace codesign::fem

@@ -1,0 +1,83 @@
+#include "fem/meshing/topology_keeper.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "errors.hpp"
+#include "fem/meshing/surface_match.hpp"
+#include "fem/meshing/thread_clock.hpp"
+#include "fem/meshing/wall_size.hpp"
+
+namespace codesign::fem {
+namespace {
+
+constexpr double kLeastTime = 1e-3;  // s
+
+int total_genus(const Topology& topology) {
+  int genus = 0;
+  for (const int euler : topology.euler) genus += genus_of(euler);
+  return genus;
+}
+
+// What is different, in words.
+std::string difference(const Topology& found, const Topology& wanted) {
+  if (found.euler.size() != wanted.euler.size())
+    return std::to_string(found.euler.size()) + " closed boundaries instead of " +
+           std::to_string(wanted.euler.size());
+  if (found.euler != wanted.euler)
+    return "genus " + std::to_string(total_genus(found)) + " instead of " +
+           std::to_string(total_genus(wanted));
+  return std::to_string(found.open_edges + found.pinched_points) +
+         " edges and points where the boundary is not manifold";
+}
+
+std::string place_text(const Eigen::Vector3d& p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g) mm", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z());
+  return text;
+}
+
+}  // namespace
+
+TopologyKeeper::TopologyKeeper(const PreparedSurface& prepared, const SizeField& size,
+                               const MeshOptions& options)
+    : prepared_(prepared),
+      size_(size),
+      options_(options),
+      deadline_(thread_seconds() + options.time_limit) {}
+
+MeshOptions TopologyKeeper::options() const {
+  MeshOptions options = options_;
+  if (round_ > 0) options.time_limit = std::max(kLeastTime, deadline_ - thread_seconds());
+  return options;
+}
+
+bool TopologyKeeper::accepts(const TetMesh& mesh) {
+  const Topology found = measure_topology(boundary_triangles(mesh));
+  if (found == prepared_.topology) return true;
+  const std::vector<Eigen::Vector3d> places =
+      find_mismatches(mesh, prepared_.surface, prepared_.oracle);
+  mismatch_ = "the mesh has another topology than its surface near " + place_text(places.front()) +
+              ": " + difference(found, prepared_.topology);
+  if (round_ == options_.topology_rounds)
+    refuse(std::to_string(round_) + " refinements there did not help");
+  if (walls_.empty()) walls_ = find_walls(prepared_, size_.base / kOfWall);
+  size_ = refine_at(size_, places, walls_, ++round_);
+  return false;
+}
+
+void TopologyKeeper::refuse(const std::string& reason) const {
+  if (mismatch_.empty()) throw MeshError(reason);
+  throw MeshError(mismatch_ + "; " + reason +
+                  ": a smaller edge length or a thicker wall is needed");
+}
+
+void TopologyKeeper::report(TetMesh& mesh) const {
+  mesh.report.refinements = round_;
+  for (const int euler : prepared_.topology.euler) mesh.report.genus.push_back(genus_of(euler));
+  if (options_.measure_distance)
+    mesh.report.surface_distance =
+        surface_distance(mesh, prepared_.surface, prepared_.oracle).distance;
+}
+
+}  // namespace codesign::fem

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "fem/mesh/tet_mesh.hpp"
+#include "fem/meshing/mesh_options.hpp"
+#include "fem/meshing/prepared_surface.hpp"
+#include "fem/meshing/size_field.hpp"
+#include "fem/meshing/wall_samples.hpp"
+
+namespace codesign::fem {
+
+// Compares the boundary of a mesh with the surface: as many closed pieces, each of the same Euler
+// characteristic, manifold. Where they differ it asks for smaller elements, a few times.
+class TopologyKeeper {
+ public:
+  // `prepared` must outlive the keeper.
+  TopologyKeeper(const PreparedSurface& prepared, const SizeField& size,
+                 const MeshOptions& options);
+
+  // What the next mesh is to be made with; the time limit is for all meshes together.
+  const SizeField& size() const { return size_; }
+  MeshOptions options() const;
+  bool separate_patches() const { return round_ > 0; }
+
+  // Whether the mesh has the topology of the surface; if not, the size is smaller afterwards.
+  // mesh.boundary_face: patches. Throws MeshError, with a place, after the last round.
+  bool accepts(const TetMesh& mesh);
+
+  // Throws MeshError: what a mesh of another topology could not be refined for; the reason alone
+  // if there was none.
+  [[noreturn]] void refuse(const std::string& reason) const;
+
+  // Completes the report of an accepted mesh.
+  void report(TetMesh& mesh) const;
+
+ private:
+  const PreparedSurface& prepared_;
+  SizeField size_;
+  MeshOptions options_;
+  double deadline_;
+  int round_ = 0;
+  std::string mismatch_;           // of the last mesh and where; empty before the first one
+  std::vector<WallSample> walls_;  // once a mesh was refused
+};
+
+}  // namespace codesign::fem

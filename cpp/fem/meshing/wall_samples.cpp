@@ -1,0 +1,149 @@
+#include "fem/meshing/wall_samples.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "fem/surface/distance.hpp"
+
+namespace codesign::fem {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFinest = 1.0 / 20.0;   // distance of samples, relative to the limit
+constexpr double kMostSamples = 2e5;     // of the whole surface, about
+constexpr double kFacing = 0.5;          // cosine from which faces are opposite to each other
+constexpr double kParallel = 0.99985;    // of faces with a common edge that form a wall: 1 degree
+constexpr double kRoundParallel = 0.94;  // of one smooth face: 20 degrees
+constexpr double kOnLine = 1e-6;         // relative to the limit
+constexpr double kLineStep = 0.7;        // of the distance found
+
+class Sampler {
+ public:
+  Sampler(const PreparedSurface& prepared, double limit)
+      : surface_(prepared.surface),
+        patches_(prepared.patches),
+        oracle_(prepared.oracle),
+        limit_(limit) {
+    double area = 0.0;
+    for (Eigen::Index t = 0; t < surface_.triangles.rows(); ++t) area += triangle_area(surface_, t);
+    finest_ = std::max(kFinest * limit, std::sqrt(area / kMostSamples));
+    for (const FeatureLine& line : prepared.lines) meeting_.insert(line.patches);
+    for (Eigen::Index t = 0; t < surface_.triangles.rows(); ++t)
+      for (int k = 0; k < 3; ++k)
+        patches_at_[surface_.triangles(t, k)].insert(patch_of(static_cast<int>(t)));
+  }
+
+  void sample_triangle(int t) {
+    const Vector3d normal = triangle_normal(surface_, t);
+    if (normal.isZero()) return;
+    std::vector<std::array<Vector3d, 3>> pieces{
+        {corner(surface_, t, 0), corner(surface_, t, 1), corner(surface_, t, 2)}};
+    while (!pieces.empty()) {
+      const std::array<Vector3d, 3> piece = pieces.back();
+      pieces.pop_back();
+      const auto [longest, k] = longest_edge(piece);
+      const Vector3d centre = (piece[0] + piece[1] + piece[2]) / 3.0;
+      double spacing = limit_, wall = limit_;
+      if (longest <= limit_) {
+        wall = thickness(t, centre, -normal);
+        const double gap = thickness(t, centre, normal);
+        if (gap < limit_) samples_.push_back({centre, gap, 0.0});
+        spacing = std::max(std::min(wall, gap), finest_);
+      }
+      const bool whole = longest <= spacing;
+      if (whole || wall < limit_)
+        samples_.push_back(
+            {centre, wall,
+             whole ? 0.5 * (piece[1] - piece[0]).cross(piece[2] - piece[0]).norm() : 0.0});
+      if (whole) continue;
+      const Vector3d middle = 0.5 * (piece[k] + piece[(k + 1) % 3]);
+      pieces.push_back({piece[k], middle, piece[(k + 2) % 3]});
+      pieces.push_back({middle, piece[(k + 1) % 3], piece[(k + 2) % 3]});
+    }
+  }
+
+  void sample_line(const FeatureLine& line) {
+    std::set<int> own{line.patches.first, line.patches.second};
+    if (line.starts_at_corner)
+      for (const int end : {line.points.front(), line.points.back()})
+        own.insert(patches_at_[end].begin(), patches_at_[end].end());
+    const auto foreign = [&](int patch) { return own.count(patch) == 0; };
+    for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
+      const Vector3d a = surface_.points.row(line.points[i]).transpose();
+      const Vector3d b = surface_.points.row(line.points[i + 1]).transpose();
+      const double length = (b - a).norm();
+      for (double s = 0.0; s < length;) {
+        const Vector3d p = a + s / length * (b - a);
+        const auto found = oracle_.nearest_where(p, limit_, foreign);
+        const double distance = found ? (found->point - p).norm() : limit_;
+        if (found && !on_line(*found)) samples_.push_back({p, distance, 0.0});
+        s += std::max(kLineStep * distance, finest_);
+      }
+    }
+  }
+
+  std::vector<WallSample> take() { return std::move(samples_); }
+
+ private:
+  int patch_of(int t) const { return patches_.of_triangle[static_cast<std::size_t>(t)]; }
+
+  static std::pair<double, std::size_t> longest_edge(const std::array<Vector3d, 3>& piece) {
+    std::pair<double, std::size_t> best{-1.0, 0};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double length = (piece[(k + 1) % 3] - piece[k]).norm(); length > best.first)
+        best = {length, k};
+    return best;
+  }
+
+  // To the opposite side of the wall or gap; the limit if there is none.
+  double thickness(int t, const Vector3d& p, const Vector3d& direction) const {
+    const auto hit = oracle_.first_hit(p, p + limit_ * direction, t);
+    if (!hit) return limit_;
+    const double facing =
+        -triangle_normal(surface_, t).dot(triangle_normal(surface_, hit->triangle));
+    const int own = patch_of(t), other = patch_of(hit->triangle);
+    const bool meet = meeting_.count(std::minmax(own, other)) > 0;
+    if (own == other ? facing < kRoundParallel : meet && facing < kParallel) return limit_;
+    return (hit->point - p).norm() * (facing > kFacing ? facing : 1.0);
+  }
+
+  // Lines keep their distance from each other by themselves.
+  bool on_line(const SolidOracle::Hit& hit) const {
+    const double tolerance = kOnLine * limit_;
+    for (int k = 0; k < 3; ++k)
+      if (patches_.line[static_cast<std::size_t>(hit.triangle)][static_cast<std::size_t>(k)] &&
+          squared_distance_to_segment(hit.point, corner(surface_, hit.triangle, k),
+                                      corner(surface_, hit.triangle, (k + 1) % 3)) <
+              tolerance * tolerance)
+        return true;
+    return false;
+  }
+
+  const SurfaceMesh& surface_;
+  const Patches& patches_;
+  const SolidOracle& oracle_;
+  double limit_, finest_;
+  std::set<std::pair<int, int>> meeting_;    // patches with a common line
+  std::map<int, std::set<int>> patches_at_;  // by point
+  std::vector<WallSample> samples_;
+};
+
+}  // namespace
+
+std::vector<WallSample> find_walls(const PreparedSurface& prepared, double limit) {
+  Sampler sampler(prepared, limit);
+  for (Eigen::Index t = 0; t < prepared.surface.triangles.rows(); ++t)
+    sampler.sample_triangle(static_cast<int>(t));
+  for (const FeatureLine& line : prepared.lines) sampler.sample_line(line);
+  return sampler.take();
+}
+
+}  // namespace codesign::fem

@@ -1,0 +1,103 @@
+#include "fem/meshing/wall_size.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "fem/meshing/prepared_surface.hpp"
+#include "fem/surface/surface_check.hpp"
+
+namespace codesign::fem {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kMeanWalls = 2.5;        // elements across the mean wall
+constexpr double kMeanElements = 30'000;  // of the mean edge length, about
+constexpr double kGrowth = 0.4;           // of the edge length, per metre
+constexpr double kSmallest = 1.0 / 20.0;  // edge length, relative to the base
+constexpr double kRaise = 1.25;           // of the smallest edge length while there are too many
+constexpr double kDensity = 4.6;          // elements per cube of the edge length (measured)
+constexpr double kAround = 3.0;           // a refined place reaches this many edge lengths
+constexpr double kShrink = 0.8;           // of the edge length from round to round
+
+void add_walls(SizeField& size, const std::vector<WallSample>& walls, double smallest) {
+  std::vector<Vector3d> points;
+  std::vector<double> sizes;
+  for (const WallSample& wall : walls) {
+    const double length = std::max(kOfWall * wall.thickness, smallest);
+    if (length >= size.base) continue;
+    points.push_back(wall.point);
+    sizes.push_back(length);
+  }
+  if (points.empty()) return;
+  size.walls.push_back(
+      std::make_shared<const SizePoints>(std::move(points), std::move(sizes), kGrowth));
+}
+
+// About how many elements a size field leads to.
+double count_elements(const SizeField& size, const std::vector<WallSample>& walls, double volume) {
+  double elements = 0.0;
+  for (const WallSample& wall : walls) {
+    const double part =
+        0.5 * wall.area * wall.thickness;  // the other half belongs to the other side
+    volume -= part;
+    elements += kDensity * part / std::pow(size_at(size, wall.point), 3);
+  }
+  return elements + kDensity * std::max(0.0, volume) / std::pow(size.base, 3);
+}
+
+}  // namespace
+
+double mean_wall_size(const SurfaceMesh& surface) {
+  const SurfaceReport report = check_surface(surface);
+  return std::max(2.0 * report.volume / report.area / kMeanWalls,
+                  std::cbrt(8.0 * report.volume / kMeanElements));
+}
+
+SizeField wall_size(const SurfaceMesh& input, double base, const MeshOptions& options) {
+  SizeField size{base, {}};
+  check_size_field(size);
+  const SurfaceReport report = check_surface(input);
+  MeshOptions quick = options;
+  quick.check_intersections = false;  // the mesher looks for them
+  const std::vector<WallSample> walls =
+      find_walls(prepare_surface(input, size, quick), base / kOfWall);
+  for (double smallest = kSmallest * base; smallest < base; smallest *= kRaise) {
+    size.walls.clear();
+    add_walls(size, walls, smallest);
+    if (size.walls.empty() ||
+        count_elements(size, walls, report.volume) <= static_cast<double>(kDefaultElements))
+      return size;
+  }
+  size.walls.clear();
+  return size;
+}
+
+SizeField refine_at(const SizeField& size, const std::vector<Vector3d>& places,
+                    const std::vector<WallSample>& walls, int round) {
+  const SizePoints near(places, std::vector<double>(places.size(), 0.0), 1.0);
+  const double shrink = std::pow(kShrink, round - 1);
+  std::vector<Vector3d> points;
+  std::vector<double> sizes;
+  for (const WallSample& wall : walls) {
+    const double now = size_at(size, wall.point), length = kOfWall * shrink * wall.thickness;
+    if (length >= now) continue;
+    const double reach = kAround * now;
+    if (near.size_at(wall.point, reach) >= reach) continue;  // the distance to the next place
+    points.push_back(wall.point);
+    sizes.push_back(length);
+  }
+  if (points.empty() || round > 2)
+    for (const Vector3d& place : places) {
+      points.push_back(place);
+      sizes.push_back(0.5 * size_at(size, place));
+    }
+  SizeField refined = size;
+  refined.walls.push_back(
+      std::make_shared<const SizePoints>(std::move(points), std::move(sizes), kGrowth));
+  return refined;
+}
+
+}  // namespace codesign::fem

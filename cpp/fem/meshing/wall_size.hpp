@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "fem/meshing/mesh_options.hpp"
+#include "fem/meshing/size_field.hpp"
+#include "fem/meshing/wall_samples.hpp"
+#include "fem/surface/surface_mesh.hpp"
+
+namespace codesign::fem {
+
+inline constexpr double kOfWall = 0.9;  // largest edge length relative to the wall: below 1, lines
+                                        // on one side keep away from the other side
+inline constexpr std::size_t kDefaultElements = 250'000;  // that thin walls may ask for, about
+
+// Edge length from the mean wall thickness 2 · volume / area, limited by the number of elements.
+// [m]
+double mean_wall_size(const SurfaceMesh& surface);
+
+// `base` where the walls are thick, kOfWall of the local wall thickness or gap where they are thin,
+// also beside feature lines; graded between. Never below a twentieth of `base`, nor so small that
+// more than about kDefaultElements elements would be needed. Throws MeshError for surfaces that
+// bound no solid, std::invalid_argument unless base > 0.
+SizeField wall_size(const SurfaceMesh& surface, double base, const MeshOptions& options = {});
+
+// A size field with smaller elements at the given places: kOfWall of the walls around, less in
+// later rounds; half the length there if no wall around is thin. round: from 1.
+SizeField refine_at(const SizeField& size, const std::vector<Eigen::Vector3d>& places,
+                    const std::vector<WallSample>& walls, int round);
+
+}  // namespace codesign::fem
