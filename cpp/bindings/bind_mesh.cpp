@@ -230,6 +230,8 @@ min(base, size + growth * max(0, distance - radius)) over all sources; metres.)"
            "base"_a, "sources"_a = std::vector<SizeSource>{})
       .def_readonly("base", &SizeField::base)
       .def_readonly("sources", &SizeField::sources)
+      .def("scaled", &scaled, "factor"_a,
+           "The field with all edge lengths times a positive factor.")
       .def_property_readonly("smallest", &smallest_size, "m, the smallest edge length anywhere")
       .def(
           "__call__",
@@ -355,7 +357,7 @@ void bind_mesher(py::module_& m) {
         py::call_guard<py::gil_scoped_release>(),
         R"(Edge length that follows the local wall thickness.
 
-Where walls or gaps between walls are thin, 0.9 of their thickness; elsewhere `edge_length`; graded
+Where walls or gaps between walls are thin, 0.85 of their thickness; elsewhere `edge_length`; graded
 between. Never below a twentieth of `edge_length`, nor so small that more than about 250 000
 elements would be needed.
 

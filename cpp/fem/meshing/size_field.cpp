@@ -54,4 +54,16 @@ double smallest_size(const SizeField& field) {
   return size;
 }
 
+SizeField scaled(const SizeField& field, double factor) {
+  SizeField other = field;
+  other.base *= factor;
+  for (SizeSource& source : other.sources) {
+    source.size *= factor;
+    source.growth *= factor;
+  }
+  for (auto& wall : other.walls) wall = std::make_shared<const SizePoints>(wall->scaled(factor));
+  check_size_field(other);
+  return other;
+}
+
 }  // namespace codesign::fem

@@ -34,4 +34,7 @@ double size_at(const SizeField& field, const Eigen::Vector3d& p);
 // The smallest edge length anywhere. [m]
 double smallest_size(const SizeField& field);
 
+// The field with all edge lengths times a positive factor.
+SizeField scaled(const SizeField& field, double factor);
+
 }  // namespace codesign::fem

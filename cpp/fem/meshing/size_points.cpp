@@ -62,6 +62,14 @@ void SizePoints::build(std::vector<int>& order, int first, int last,
   build(order, middle, last, points, sizes);
 }
 
+SizePoints SizePoints::scaled(double factor) const {
+  SizePoints other = *this;
+  other.growth_ *= factor;
+  for (Node& node : other.nodes_) node.smallest *= factor;
+  for (double& size : other.sizes_) size *= factor;
+  return other;
+}
+
 double SizePoints::size_at(const Eigen::Vector3d& p, double cap) const {
   std::array<int, kMaxDepth> stack;
   std::size_t depth = 0;

@@ -15,6 +15,9 @@ class SizePoints {
   // The edge length at p, or `cap` if that is smaller. [m]
   double size_at(const Eigen::Vector3d& p, double cap) const;
 
+  // All edge lengths times a factor, at every point.
+  SizePoints scaled(double factor) const;
+
   double smallest() const { return nodes_.front().smallest; }
 
  private:

@@ -14,8 +14,6 @@
 #include "fem/meshing/linear_tets.hpp"
 #include "fem/meshing/prepared_surface.hpp"
 #include "fem/meshing/tet_improve.hpp"
-#include "fem/meshing/prepared_surface.hpp"
-#include "fem/meshing/tet_improve.hpp"
 #include "fem/meshing/topology_keeper.hpp"
 
 namespace codesign::fem {

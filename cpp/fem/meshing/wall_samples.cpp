@@ -18,12 +18,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFinest = 1.0 / 20.0;   // distance of samples, relative to the limit
-constexpr double kMostSamples = 2e5;     // of the whole surface, about
+constexpr double kMostSamples = 1e5;     // of the whole surface, about
 constexpr double kFacing = 0.5;          // cosine from which faces are opposite to each other
 constexpr double kParallel = 0.99985;    // of faces with a common edge that form a wall: 1 degree
 constexpr double kRoundParallel = 0.94;  // of one smooth face: 20 degrees
 constexpr double kOnLine = 1e-6;         // relative to the limit
-constexpr double kLineStep = 0.7;        // of the distance found
+constexpr double kSpacing = 0.5;         // of samples, relative to the wall
+constexpr double kLineStep = 0.5;        // of the distance found
 
 class Sampler {
  public:
@@ -56,7 +57,7 @@ class Sampler {
         wall = thickness(t, centre, -normal);
         const double gap = thickness(t, centre, normal);
         if (gap < limit_) samples_.push_back({centre, gap, 0.0});
-        spacing = std::max(std::min(wall, gap), finest_);
+        spacing = std::max(kSpacing * std::min(wall, gap), finest_);
       }
       const bool whole = longest <= spacing;
       if (whole || wall < limit_)

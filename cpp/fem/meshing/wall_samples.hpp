@@ -14,7 +14,7 @@ struct WallSample {
   double area;            // of the surface that it stands for, m²; 0 for lines and gaps
 };
 
-// Samples of the whole surface, as close to each other as the wall there is thick, and of the
+// Samples of the whole surface, at half the wall thickness from each other, and of the
 // feature lines where they come near a patch that does not meet them. Faces that meet at an edge
 // are no wall however thin they make its surroundings: a wedge needs no small elements.
 // limit: thicker walls and wider gaps are of no interest, m.

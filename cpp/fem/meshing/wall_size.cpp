@@ -22,11 +22,15 @@ constexpr double kDensity = 4.6;          // elements per cube of the edge lengt
 constexpr double kAround = 3.0;           // a refined place reaches this many edge lengths
 constexpr double kShrink = 0.8;           // of the edge length from round to round
 
+double wall_length(const WallSample& wall, double smallest) {
+  return std::max(kOfWall * wall.thickness, smallest);
+}
+
 void add_walls(SizeField& size, const std::vector<WallSample>& walls, double smallest) {
   std::vector<Vector3d> points;
   std::vector<double> sizes;
   for (const WallSample& wall : walls) {
-    const double length = std::max(kOfWall * wall.thickness, smallest);
+    const double length = wall_length(wall, smallest);
     if (length >= size.base) continue;
     points.push_back(wall.point);
     sizes.push_back(length);
@@ -36,16 +40,16 @@ void add_walls(SizeField& size, const std::vector<WallSample>& walls, double sma
       std::make_shared<const SizePoints>(std::move(points), std::move(sizes), kGrowth));
 }
 
-// About how many elements a size field leads to.
-double count_elements(const SizeField& size, const std::vector<WallSample>& walls, double volume) {
+// About how many elements the walls and what is between them lead to, without the grading.
+double count_elements(const std::vector<WallSample>& walls, double smallest, double base,
+                      double volume) {
   double elements = 0.0;
   for (const WallSample& wall : walls) {
-    const double part =
-        0.5 * wall.area * wall.thickness;  // the other half belongs to the other side
+    const double part = 0.5 * wall.area * wall.thickness;  // the other side has the other half
     volume -= part;
-    elements += kDensity * part / std::pow(size_at(size, wall.point), 3);
+    elements += kDensity * part / std::pow(std::min(base, wall_length(wall, smallest)), 3);
   }
-  return elements + kDensity * std::max(0.0, volume) / std::pow(size.base, 3);
+  return elements + kDensity * std::max(0.0, volume) / std::pow(base, 3);
 }
 
 }  // namespace
@@ -64,14 +68,10 @@ SizeField wall_size(const SurfaceMesh& input, double base, const MeshOptions& op
   quick.check_intersections = false;  // the mesher looks for them
   const std::vector<WallSample> walls =
       find_walls(prepare_surface(input, size, quick), base / kOfWall);
-  for (double smallest = kSmallest * base; smallest < base; smallest *= kRaise) {
-    size.walls.clear();
-    add_walls(size, walls, smallest);
-    if (size.walls.empty() ||
-        count_elements(size, walls, report.volume) <= static_cast<double>(kDefaultElements))
-      return size;
-  }
-  size.walls.clear();
+  double smallest = kSmallest * base;
+  while (smallest < base && count_elements(walls, smallest, base, report.volume) > kMostElements)
+    smallest *= kRaise;
+  add_walls(size, walls, smallest);
   return size;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <vector>
 
 #include "fem/meshing/mesh_options.hpp"
@@ -11,9 +10,9 @@
 
 namespace codesign::fem {
 
-inline constexpr double kOfWall = 0.9;  // largest edge length relative to the wall: below 1, lines
-                                        // on one side keep away from the other side
-inline constexpr std::size_t kDefaultElements = 250'000;  // that thin walls may ask for, about
+inline constexpr double kOfWall = 0.85;  // edge length relative to the wall: below 1 also between
+                                         // samples, lines on one side keep away from the other side
+inline constexpr double kMostElements = 250'000;  // that thin walls may ask for, about
 
 // Edge length from the mean wall thickness 2 · volume / area, limited by the number of elements.
 // [m]
@@ -21,7 +20,7 @@ double mean_wall_size(const SurfaceMesh& surface);
 
 // `base` where the walls are thick, kOfWall of the local wall thickness or gap where they are thin,
 // also beside feature lines; graded between. Never below a twentieth of `base`, nor so small that
-// more than about kDefaultElements elements would be needed. Throws MeshError for surfaces that
+// more than about kMostElements elements would be needed. Throws MeshError for surfaces that
 // bound no solid, std::invalid_argument unless base > 0.
 SizeField wall_size(const SurfaceMesh& surface, double base, const MeshOptions& options = {});
 

@@ -182,7 +182,7 @@ def print_stress(document: dict[str, Any]) -> None:
         table.add_row("facets curved back", _describe_facets(document["smoothing"]))
     if document["facets_literal"] is not None:
         table.add_row("facets that look round", _describe_facets(document["facets_literal"]) + " if --smooth")
-    table.add_row("elements", f"{document['tetrahedra']}, edge length {document['edge_length'] * 1e3:.3g} mm")
+    table.add_row("elements", _describe_elements(document))
     table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
     out.print(table)
     for warning in document["warnings"]:
@@ -204,6 +204,14 @@ def _describe_place(place: dict[str, Any]) -> str:
     bend = f", bends by {place['bend_deg']:.0f}°" if place["bend_deg"] >= 0.5 else ""
     facets = f", {place['facets']} facets" if place["facets"] else ", part of a facet"
     return f"{place['type']}, {place['area'] * 1e6:.4g} mm² at {_millimetres(place['centroid'])}{bend}{facets}"
+
+
+def _describe_elements(document: dict[str, Any]) -> str:
+    size, smallest = 1e3 * document["edge_length"], 1e3 * document["smallest_edge_length"]
+    thin = f", {smallest:.3g} mm at thin walls" if smallest < size else ""
+    rounds = document["mesh"]["refinements"]
+    refined = f", refined {rounds}x to keep the surface whole" if rounds else ""
+    return f"{document['tetrahedra']}, edge length {size:.3g} mm{thin}{refined}"
 
 
 def _describe_facets(facets: dict[str, Any]) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 
 from codesign import fem
 from codesign.cli.stress_file import load_file, repair_document, unit_hints
-from codesign.cli.stress_mesh import default_edge_length, literal_facets, mesh_places
+from codesign.cli.stress_mesh import literal_facets, mesh_places
 from codesign.cli.stress_options import StressInputError, parse_load, parse_selection
 from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
 from codesign.errors import ModelError
@@ -31,7 +31,7 @@ class Solved:
     mesh: fem.TetMesh
     places: list[CaughtPlace]
     result: fem.StaticResult
-    size: float
+    size: fem.SizeField
     smoothing: dict[str, Any] | None
     seconds: dict[str, float]
 
@@ -55,7 +55,7 @@ def stress_document(
     Args:
         path: STL file. scale: metres per unit of the file, also of the selections' coordinates.
         fix: selections held in all directions. load: texts `SEL: fx fy fz`.
-        edge_length_mm: of the elements; from the wall thickness if absent. vtu, png: the stress field, a picture of it.
+        edge_length_mm: of the elements; from the local wall if absent. vtu, png: the stress field, a picture of it.
         exclusion_mm: the peak stress is read farther than this from borders of clamps and from sharp pocket edges that
             border a load; in proportion to the local feature if absent.
         smooth: take the file for a tessellation of curved faces and curve its facets back before meshing.
@@ -93,9 +93,9 @@ def _solve(
     simplify: bool,
 ) -> Solved:
     start = time.perf_counter()
-    size = default_edge_length(surface) if edge_length is None else edge_length
+    size = fem.default_size(surface) if edge_length is None else fem.SizeField(edge_length)
     mesh, named, smoothing = mesh_places(surface, [placed.place for placed in asked], size, smooth, simplify)
-    places = caught_places(asked, named, mesh, size)
+    places = caught_places(asked, named, mesh, size.base)
     supports = [fem.Support(place.selection) for place in places if place.asked.force is None]
     loads = [fem.Force(p.selection, p.asked.force) for p in places if p.asked.force is not None]
     meshed = time.perf_counter()
@@ -145,7 +145,8 @@ def _document(path: Path, material: fem.Material, solved: Solved, smooth: bool) 
         "warnings": _warnings(solved),
         "mass": quality.volume * material.density if material.density > 0.0 else None,
         "volume": quality.volume,
-        "edge_length": solved.size,
+        "edge_length": solved.size.base,
+        "smallest_edge_length": solved.size.smallest,
         "exclusion": {"smallest": result.exclusion_smallest, "largest": result.exclusion_largest},
         "nodes": len(mesh.nodes),
         "tetrahedra": len(mesh.tets),
@@ -154,9 +155,12 @@ def _document(path: Path, material: fem.Material, solved: Solved, smooth: bool) 
             "collapsed_edges": report.collapsed,
             "collapse_distance": report.collapse_distance,
             "peeled": report.peeled,
+            "refinements": report.refinements,
+            "genus": report.genus,
+            "surface_distance": report.surface_distance,
         },
         "smoothing": solved.smoothing,
-        "facets_literal": None if smooth else literal_facets(solved.surface, solved.size),
+        "facets_literal": None if smooth else literal_facets(solved.surface, solved.size.base),
         "seconds": solved.seconds,
     }
 
@@ -167,7 +171,7 @@ def _warnings(solved: Solved) -> list[str]:
     if not result.peak_resolved:
         found.append(
             f"the peak stress is not resolved: its estimated error is {result.stress_error / result.peak_stress:.0%} "
-            f"of it; give a smaller --edge-length than {solved.size / MILLIMETRE:.3g} mm"
+            f"of it; give a smaller --edge-length than {solved.size.smallest / MILLIMETRE:.3g} mm"
         )
     if result.left_out.stress > LEFT_OUT_WARNED * result.peak_stress > 0.0:
         at = ", ".join(f"{x / MILLIMETRE:.2f}" for x in result.left_out.position)

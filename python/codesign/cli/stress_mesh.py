@@ -2,30 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from codesign import fem
 from codesign.errors import MeshError
 from codesign.fem.selections import Labelled, Place, label_surface
 
-ELEMENTS_WANTED = 30_000  # of the default edge length, at most
 COARSE = 20_000  # triangles: a surface with more is no coarse tessellation
 FACET_DISTANCE = 0.06  # of sides of elements to the surface, relative to their size, as in fem.tetrahedralize
-WALLS = 2.5  # elements across the mean wall, of the default edge length
-
-
-def default_edge_length(surface: fem.SurfaceMesh) -> float:
-    """Edge length [m] from the mean wall thickness, 2 · volume / area, limited by the number of elements."""
-    volume = fem.mass_properties(surface, 1.0).volume
-    a, b, c = (surface.points[surface.triangles[:, k]] for k in range(3))
-    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    return max(2.0 * volume / area / WALLS, math.cbrt(8.0 * volume / ELEMENTS_WANTED))
 
 
 def literal_facets(surface: fem.SurfaceMesh, size: float) -> dict[str, Any] | None:
@@ -51,7 +38,7 @@ def _smoothing(report: fem.SmoothReport) -> dict[str, Any]:
 
 
 def mesh_places(
-    surface: fem.SurfaceMesh, places: Sequence[Place], size: float, smooth: bool, simplify: bool
+    surface: fem.SurfaceMesh, places: Sequence[Place], size: fem.SizeField, smooth: bool, simplify: bool
 ) -> tuple[fem.TetMesh, Labelled, dict[str, Any] | None]:
     """The mesh, the places on it, and the smoothing; the facets themselves if their smooth surface cannot be meshed.
 
@@ -75,7 +62,7 @@ def _mesh_either(
     plain: Callable[[], fem.SurfaceMesh],
     named: Labelled,
     places: Sequence[Place],
-    size: float,
+    size: fem.SizeField,
     simplify: bool,
 ) -> tuple[fem.TetMesh, Labelled]:
     """The mesh and the places on it, with exact borders unless they are too ragged for the edge length.

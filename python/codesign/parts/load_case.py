@@ -99,7 +99,7 @@ def part_case(part: Part, settings: StressSettings) -> _core.PartCase:
 
 
 def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
-    """Clamped and pressed faces by name; edge length from the part's volume and area (its mean wall thickness)."""
+    """Clamped and pressed faces by name; edge length from the mean wall thickness, shorter where walls are thin."""
     surface = part.fem_surface(settings.geometry, settings.segments)
     properties = part.mass_properties()
     corners = surface.points[surface.triangles]
@@ -107,7 +107,7 @@ def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
     thickness = 2.0 * properties.volume / areas.sum()
     edge_length = thickness * (0.2 if settings.accuracy == "fine" else 0.35)  # the peak's own size is found by refining
     cases = load_cases(settings, lambda load: face_force(surface, load, part.name))
-    return native_case(settings, surface, fem.SizeField(edge_length), [clamp(*settings.supports)], cases)
+    return native_case(settings, surface, fem.default_size(surface, edge_length), [clamp(*settings.supports)], cases)
 
 
 def load_cases(settings: StressSettings, on_face: Callable[[PressedFace | PushedFace], fem.Load]) -> list[fem.LoadCase]:

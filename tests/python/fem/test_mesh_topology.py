@@ -1,0 +1,137 @@
+"""The boundary of a mesh has the topology of its surface, also where walls are thin; right values from closed forms
+and from CalculiX on finer meshes."""
+
+from __future__ import annotations
+
+import manifold3d
+import numpy as np
+import pytest
+
+from codesign import fem
+from codesign.errors import MeshError
+
+ERGAL = fem.Material("ergal", 71.7e9, 0.3, 462e6, 2800.0)
+
+
+def box(lower, upper):
+    """A solid between two corners [mm]."""
+    return manifold3d.Manifold.cube(np.subtract(upper, lower).tolist()).translate(list(map(float, lower)))
+
+
+def surface_of(solid):
+    """In metres."""
+    mesh = solid.to_mesh()
+    points = np.asarray(mesh.vert_properties)[:, :3].astype(float) * 1e-3
+    return fem.SurfaceMesh(points, np.asarray(mesh.tri_verts).astype(np.int32))
+
+
+def tray(floor=1.0):
+    return surface_of(box((0, 0, 0), (60, 60, 8)) - box((8, 8, floor), (52, 52, 9)))
+
+
+def wedge(angle_deg, length=30.0, width=20.0):
+    """A solid between two planes that meet at the y axis."""
+    height = length * np.tan(np.radians(angle_deg))
+    points = [[x, y, z] for y in (0.0, width) for x, z in ((0.0, 0.0), (length, 0.0), (length, height))]
+    triangles = [[0, 1, 2], [3, 5, 4], [0, 4, 1], [0, 3, 4], [1, 5, 2], [1, 4, 5], [0, 2, 5], [0, 5, 3]]
+    return fem.SurfaceMesh(np.array(points) * 1e-3, np.array(triangles))
+
+
+def euler_characteristic(triangles):
+    """Of closed manifold triangles; fails if an edge has not exactly two of them."""
+    edges = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    edges, uses = np.unique(edges, axis=0, return_counts=True)
+    assert (uses == 2).all()
+    return len(np.unique(triangles)) - len(edges) + len(triangles)
+
+
+def assert_same_as_surface(mesh, surface, volume_tolerance=2e-3):
+    assert euler_characteristic(mesh.boundary[:, :3]) == euler_characteristic(surface.triangles)
+    volume = fem.mass_properties(surface, 1.0).volume
+    assert mesh.quality.volume == pytest.approx(volume, rel=volume_tolerance)
+
+
+def displacement(mesh, held, pushed, force, material=ERGAL):
+    supports = [fem.Support(selection) for selection in held]
+    return fem.solve_static(mesh, material, supports, [fem.Force(pushed, force)]).max_displacement
+
+
+def test_floor_of_a_tray_stays_whole_and_as_soft_as_it_is():
+    surface = tray()
+    mesh = fem.tetrahedralize(surface)
+    assert_same_as_surface(mesh, surface)
+    assert mesh.report.genus == [0]
+    assert mesh.report.refinements == 0
+    lower, upper = np.zeros(3), np.array([0.060, 0.060, 0.008])
+    outer = []
+    for axis in (0, 1):
+        for end in (lower, upper):
+            a, b = lower.copy(), upper.copy()
+            a[axis] = b[axis] = end[axis]
+            outer.append(fem.faces_in_box(a - 1e-6, b + 1e-6))
+    floor = fem.faces_near((0.030, 0.030, 0.001))
+    assert displacement(mesh, outer, floor, (0, 0, -100)) == pytest.approx(0.0395e-3, rel=0.02)
+
+
+def test_a_given_edge_length_is_refined_where_it_tears_the_floor():
+    surface = tray()
+    mesh = fem.tetrahedralize(surface, 1.6e-3)
+    assert_same_as_surface(mesh, surface)
+    assert mesh.report.refinements >= 1
+    assert mesh.report.surface_distance < 0.05e-3
+
+
+@pytest.mark.parametrize(
+    ("solid", "edge_length_mm"),
+    [
+        (box((0, 0, 0), (30, 30, 10)) - box((6, 6, 1), (24, 24, 11)), 1.3),
+        (box((0, 0, 0), (60, 40, 1)) + box((25, 0, 0.5), (35, 40, 20)), 1.3),
+    ],
+    ids=["pocket", "block on a plate"],
+)
+def test_thin_plates_beside_thick_blocks_stay_whole(solid, edge_length_mm):
+    surface = surface_of(solid)
+    for size in (None, 1e-3 * edge_length_mm):
+        assert_same_as_surface(fem.tetrahedralize(surface, size), surface)
+
+
+@pytest.mark.parametrize("angle_deg", [2.0, 5.0, 10.0])
+def test_wedges_keep_their_edge(angle_deg):
+    surface = wedge(angle_deg)
+    mesh = fem.tetrahedralize(surface, 4e-3)
+    assert_same_as_surface(mesh, surface)
+    assert len(mesh.tets) < 40_000
+
+
+def test_a_cavity_close_to_the_outside_stays_closed():
+    surface = surface_of(box((0, 0, 0), (30, 20, 10)) - box((5, 5, 0.8), (25, 15, 6)))
+    mesh = fem.tetrahedralize(surface)
+    assert mesh.report.genus == [0, 0]
+    assert_same_as_surface(mesh, surface)
+
+
+def test_a_hole_beneath_the_surface_stays_a_tunnel():
+    rod = manifold3d.Manifold.cylinder(42.0, 3.0, 3.0, 32).rotate([0.0, 90.0, 0.0]).translate([-1.0, 10.0, 3.6])
+    surface = surface_of(box((0, 0, 0), (40, 20, 8)) - rod)
+    mesh = fem.tetrahedralize(surface)
+    assert mesh.report.genus == [1]
+    assert_same_as_surface(mesh, surface, volume_tolerance=5e-3)
+
+
+def test_what_cannot_be_kept_is_refused_with_its_place():
+    with pytest.raises(MeshError, match=r"another topology than its surface near \(.*\) mm: .*max_vertices"):
+        fem.tetrahedralize(tray(), 3e-3, max_vertices=2500)
+
+
+def test_default_size_follows_the_local_wall():
+    size = fem.default_size(tray(), 3e-3)
+    middle_of_floor, corner = size(np.array([[0.03, 0.03, 0.001], [0.001, 0.001, 0.004]]))
+    assert 0.85e-3 <= middle_of_floor < 0.98e-3
+    assert corner > 2.5e-3
+    assert size.scaled(0.5).smallest == pytest.approx(0.5 * size.smallest)
+    assert fem.default_size(wedge(20.0), 3e-3).smallest == pytest.approx(3e-3)
+
+
+def test_a_large_thin_plate_does_not_ask_for_more_elements_than_stated():
+    size = fem.default_size(surface_of(box((0, 0, 0), (400, 400, 1))))
+    assert size.smallest > 0.85e-3
