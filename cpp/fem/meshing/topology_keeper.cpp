@@ -60,7 +60,8 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
   mismatch_ = "the mesh has another topology than its surface near " + place_text(places.front()) +
               ": " + difference(found, prepared_.topology);
   if (round_ == options_.topology_rounds)
-    refuse(std::to_string(round_) + " refinements there did not help");
+    refuse("it still has after " + std::to_string(round_) +
+           " rounds: a smaller edge length or a thicker wall is needed");
   if (walls_.empty()) walls_ = find_walls(prepared_, size_.base / kOfWall);
   size_ = refine_at(size_, places, walls_, ++round_);
   return false;
@@ -68,8 +69,7 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
 
 void TopologyKeeper::refuse(const std::string& reason) const {
   if (mismatch_.empty()) throw MeshError(reason);
-  throw MeshError(mismatch_ + "; " + reason +
-                  ": a smaller edge length or a thicker wall is needed");
+  throw MeshError(mismatch_ + "; refined there, " + reason);
 }
 
 void TopologyKeeper::report(TetMesh& mesh) const {
