@@ -39,6 +39,7 @@ __all__: list[str] = [
     "Traction",
     "boundary_surface",
     "check_surface",
+    "default_size",
     "face_area",
     "label_by_angle",
     "largest_distance",
@@ -194,8 +195,17 @@ class SizeField:
     def __init__(
         self, base: typing.SupportsFloat | typing.SupportsIndex, sources: collections.abc.Sequence[SizeSource] = []
     ) -> None: ...
+    def scaled(self, factor: typing.SupportsFloat | typing.SupportsIndex) -> SizeField:
+        """
+        The field with all edge lengths times a positive factor.
+        """
     @property
     def base(self) -> float: ...
+    @property
+    def smallest(self) -> float:
+        """
+        m, the smallest edge length anywhere
+        """
     @property
     def sources(self) -> list[SizeSource]: ...
 
@@ -255,9 +265,24 @@ class MeshReport:
         elements removed that hung on the mesh by a point or an edge
         """
     @property
+    def genus(self) -> list[int]:
+        """
+        of each closed piece of the boundary, the same as of the surface
+        """
+    @property
     def peeled(self) -> int:
         """
         flat boundary elements removed
+        """
+    @property
+    def refinements(self) -> int:
+        """
+        rounds of smaller elements that the surface's topology asked for
+        """
+    @property
+    def surface_distance(self) -> float | None:
+        """
+        m, largest between boundary and surface, both ways; None if not measured
         """
 
 class TetMesh:
@@ -751,6 +776,26 @@ def check_surface(surface: SurfaceMesh) -> None:
             what, where and why.
     """
 
+def default_size(
+    surface: SurfaceMesh, edge_length: typing.SupportsFloat | typing.SupportsIndex | None = None
+) -> SizeField:
+    """
+    Edge length that follows the local wall thickness.
+
+    Where walls or gaps between walls are thin, 0.85 of their thickness; elsewhere `edge_length`; graded
+    between. Never below a twentieth of `edge_length`, nor so small that more than about 250 000
+    elements would be needed.
+
+    Args:
+        surface: closed, outward-oriented.
+        edge_length: m, in thick places; from the mean wall thickness and at most about 30 000 elements
+            if absent.
+
+    Raises:
+        MeshError: the surface bounds no solid.
+        ValueError: edge_length is not positive.
+    """
+
 def face_area(mesh: TetMesh, triangles: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> float:
     """
     Area of curved boundary faces, m2.
@@ -872,7 +917,7 @@ def smooth_surface(
 
 def tetrahedralize(
     surface: SurfaceMesh,
-    edge_length: typing.SupportsFloat | typing.SupportsIndex | SizeField,
+    edge_length: typing.SupportsFloat | typing.SupportsIndex | SizeField | None = None,
     *,
     feature_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 40.0,
     simplify: typing.SupportsFloat | typing.SupportsIndex = 5e-05,
@@ -894,7 +939,8 @@ def tetrahedralize(
 
     Args:
         surface: closed, outward-oriented, one solid.
-        edge_length: m, or a SizeField.
+        edge_length: m, or a SizeField; default_size(surface) if absent. Elements become smaller
+            where the boundary would otherwise have another topology than the surface.
         feature_angle_deg: edges sharper than this are kept.
         simplify: points of the surface may move this far [m] to get rid of tiny edges and ledges;
             never more than 0.0005 of its extent and 0.1 of the smallest edge length.
@@ -909,8 +955,8 @@ def tetrahedralize(
         check_intersections: look for triangles that cross each other first.
 
     Raises:
-        MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces or of
-            wrong volume; a limit was reached.
+        MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces, of
+            another topology or wrong volume; a limit was reached.
         ValueError: an option out of range.
     """
 
