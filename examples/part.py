@@ -32,14 +32,14 @@ class MotorAngle(Part):
 
     def shape(self) -> Shape:
         """Side view extruded over the width, then the holes."""
-        t, foot, centre = self.thickness, 45.0, self.height - self.bore / 2 - 9.6
+        t, foot, center = self.thickness, 45.0, self.height - self.bore / 2 - 9.6
         side = (
             Outline(0, 0).line(foot, 0, face="mount").line(foot, t).line(t, t, radius=8)
             .line(t, self.height, face="seat").line(0, self.height).close()
         )  # fmt: skip
         body = Extrusion(side, -self.width / 2, self.width / 2, Frame(x=(1, 0, 0), y=(0, 0, 1)))
         screw = stepped_hole((2.75, -1, t), (5, t, t + 9))
-        motor = Frame((0, 0, centre), x=(0, 1, 0), y=(0, 0, 1))  # its z points along x, through the upright plate
+        motor = Frame((0, 0, center), x=(0, 1, 0), y=(0, 0, 1))  # its z points along x, through the upright plate
         reach = self.bore / 2 + 5
         holes = [stepped_hole((self.bore / 2, -1, t + 1))]
         holes += [at_points(stepped_hole((1.6, -1, t + 1)), [(-reach, 0), (reach, 0), (0, -reach), (0, reach)])]
@@ -53,7 +53,7 @@ def main(folder: Path) -> None:
     """Builds one variant."""
     part = MotorAngle(width=60, height=70, bore=22)
     properties = part.mass_properties()
-    print(f"{part.title}: {1e3 * properties.mass:.2f} g, centre of mass {(1e3 * properties.com).round(2)} mm")
+    print(f"{part.title}: {1e3 * properties.mass:.2f} g, center of mass {(1e3 * properties.com).round(2)} mm")
     print(f"faces: {', '.join(part.faces)}; surface: {len(part.surface().triangles)} triangles")
     part.write_stl(folder / "motor_angle.stl")
     write_step(part, folder / "motor_angle.step")

@@ -40,7 +40,7 @@ def main() -> None:
     print(f"{best / log.samples * 1e6:.1f} us a step, {settings.duration / best:.0f} x real time; target {TARGET} s")
     for name, seconds in phases.items():
         print(f"{name:>12} {seconds / log.samples * 1e6:6.2f} us a step {seconds / sum(phases.values()):6.1%}")
-    print(f"{log.total_qp_iterations / log.samples - 1:.2f} factorisations a momentum QP")
+    print(f"{log.total_qp_iterations / log.samples - 1:.2f} factorizations a momentum QP")
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ DESIGNS = (
 )
 
 
-def analyse(part: Part, settings: StressSettings, count: int) -> tuple[_core.PartAnalysis, float]:
+def analyze(part: Part, settings: StressSettings, count: int) -> tuple[_core.PartAnalysis, float]:
     """Result and CPU seconds."""
     case = part_case(part, settings)
     case.buckling = count
@@ -59,10 +59,10 @@ def own_factors() -> None:
     print("| --- | --- | --- | --- | --- | --- |")
     for design in DESIGNS:
         for name, part in study.build_parts(design).items():
-            for accuracy in ("optimisation", "fine"):
+            for accuracy in ("optimization", "fine"):
                 settings = replace(stress_settings(study.config, name), accuracy=accuracy)
-                (plain, without), (_, one) = (analyse(part, settings, count) for count in (0, 1))
-                factors = analyse(part, settings, 2)[0].buckling_factors
+                (plain, without), (_, one) = (analyze(part, settings, count) for count in (0, 1))
+                factors = analyze(part, settings, 2)[0].buckling_factors
                 print(
                     f"| {part.title} | {accuracy} | {len(plain.mesh.tets)} | {', '.join(map(words, factors))} "
                     f"| {without:.1f} | {one:.1f} |",

@@ -32,7 +32,7 @@ SIZES = (1.25, 1.0, 0.8)
 MEGA, MILLI = 1e6, 1e-3
 
 
-def analyse(part: Part, settings: StressSettings) -> tuple[_core.PartAnalysis, float]:
+def analyze(part: Part, settings: StressSettings) -> tuple[_core.PartAnalysis, float]:
     """Result and CPU seconds."""
     start = time.process_time()
     analysis = _core.analyse_part(part_case(part, settings))
@@ -44,7 +44,7 @@ def options(part: Part, settings: StressSettings) -> None:
     for name, change in OPTIONS.items():
         if part.name == "forearm_support" and "support" in change:
             continue
-        result = analyse(part, replace(settings, **change))[0].result
+        result = analyze(part, replace(settings, **change))[0].result
         print(
             f"| {part.title} | {name} | {result.safety_factor:.1f} | {result.peak_stress / MEGA:.2f} "
             f"| {result.stress_50 / MEGA:.2f} | {result.max_displacement / MILLI:.4f} |",
@@ -63,10 +63,10 @@ def print_geometry(part: Part, name: str, document: Mapping[str, Any], mass: flo
 
 
 def geometries(part: Part, settings: StressSettings) -> None:
-    """Simplified and full part on the mesh of the optimisation, and the full part as confirmed."""
+    """Simplified and full part on the mesh of the optimization, and the full part as confirmed."""
     mass = part.mass_properties()
     for geometry in ("simplified", "full"):
-        analysis, seconds = analyse(part, replace(settings, geometry=geometry))
+        analysis, seconds = analyze(part, replace(settings, geometry=geometry))
         copies = 2 if part.name == "jetpack_bracket" else 1
         meshed = copies * analysis.mesh.quality.volume * part.density
         print_geometry(part, geometry, part_document(mass, analysis), meshed, seconds)
@@ -83,7 +83,7 @@ def thrust_lines(study: codesign.Study) -> None:
         peaks = []
         for length in LENGTHS:
             part = study.build_parts({**DESIGNS[0], "offset": offset, "length": length})["forearm_support"]
-            peaks.append(analyse(part, settings)[0].result.peak_stress)
+            peaks.append(analyze(part, settings)[0].result.peak_stress)
         for yield_strength in (settings.material.yield_strength, TITANIUM_YIELD):
             factors = " | ".join(f"{yield_strength / peak:.1f}" for peak in peaks)
             print(f"| {offset} | {yield_strength / MEGA:.0f} | {factors} |", flush=True)

@@ -37,7 +37,7 @@ def quality(surface: SurfaceMesh) -> tuple[bool, float, float]:
 def sweep(name: str, designs: Iterable[tuple[float, float]], build: Callable[[float, float], Part]) -> None:
     variants: dict[str, Callable[[Part], SurfaceMesh]] = {
         "as made": lambda part: part.surface(),
-        "as analysed in the optimisation": lambda part: part.fem_surface("simplified"),
+        "as analyzed in the optimization": lambda part: part.fem_surface("simplified"),
     }
     for variant, make in variants.items():
         count, seconds, open_, edge, height, slowest = 0, 0.0, 0, np.inf, np.inf, 0.0

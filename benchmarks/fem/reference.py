@@ -2,7 +2,7 @@
 
 Reference: straight ten-node elements in two other codes, refined until converged; 250 N, E = 71.7 GPa,
 nu = 0.3. Prints a row per design and quantity: value, reference, deviation, CPU time (surface to safety factor), nodes.
-Usage: python benchmarks/fem/reference.py [--accuracy optimisation|fine] [--geometry simplified|full] [--only forearm]
+Usage: python benchmarks/fem/reference.py [--accuracy optimization|fine] [--geometry simplified|full] [--only forearm]
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ REFERENCE: list[tuple[str, dict[str, float], dict[str, float]]] = [
 TOLERANCE = {"peak": 5.0, "stress_50": 3.0, "u": 2.0, "work": 2.0}  # %
 
 
-def analyse(part: str, design: dict[str, float], accuracy: str, geometry: str) -> tuple[_core.PartAnalysis, float]:
+def analyze(part: str, design: dict[str, float], accuracy: str, geometry: str) -> tuple[_core.PartAnalysis, float]:
     """The analysis of one part of the shipped study and its CPU time [s]."""
     study = codesign.load_study("ironcub")
     theta = {"angle": 15.0, "distance": 42.0, "offset": 80.0, "length": 108.0} | design
@@ -45,7 +45,7 @@ def analyse(part: str, design: dict[str, float], accuracy: str, geometry: str) -
 def main() -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--accuracy", choices=("optimisation", "fine"), default="optimisation")
+    parser.add_argument("--accuracy", choices=("optimization", "fine"), default="optimization")
     parser.add_argument("--geometry", choices=("simplified", "full"), default="simplified")
     parser.add_argument("--only", default="")
     options = parser.parse_args()
@@ -54,7 +54,7 @@ def main() -> None:
     for part, design, reference in REFERENCE:
         if options.only not in part:
             continue
-        analysis, seconds = analyse(part, design, options.accuracy, options.geometry)
+        analysis, seconds = analyze(part, design, options.accuracy, options.geometry)
         result = analysis.result
         values = {
             "peak": result.peak_stress / 1e6,

@@ -1,6 +1,6 @@
 """Error estimate of the peak stress against the true error, on designs spread over the grid; table of docs/fem.md.
 
-python benchmarks/fem/stress_error.py [every k-th design, 1 if omitted] [factor on the analysed edge lengths]
+python benchmarks/fem/stress_error.py [every k-th design, 1 if omitted] [factor on the analyzed edge lengths]
 
 True error: difference from the fine mesh with half its edge length around the peak.
 """
@@ -55,9 +55,9 @@ def row(part: Part, settings: StressSettings, factor: float) -> bool:
     case = part.stress_case(settings)  # type: ignore[attr-defined]
     sources = [fem.SizeSource(s.points, factor * s.size, s.growth, s.radius) for s in case.size.sources]
     case.size = fem.SizeField(case.size.base, sources)
-    analysed = _core.analyse_part(case)
+    analyzed = _core.analyse_part(case)
     seconds = time.process_time() - start
-    result, exact = analysed.result, reference(part, settings).result
+    result, exact = analyzed.result, reference(part, settings).result
     deviation = result.peak_stress / exact.peak_stress - 1.0
     estimate = result.stress_error / result.peak_stress
     holds = abs(result.peak_stress - exact.peak_stress) <= result.stress_error

@@ -1,4 +1,4 @@
-"""Fly the robots of the published optimisation run and compare with the published outputs.
+"""Fly the robots of the published optimization run and compare with the published outputs.
 
     python benchmarks/published/flights.py [--data ../shared/data/published] [--rows 0 66 195] [--perturb 1e-15]
 

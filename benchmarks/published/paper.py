@@ -5,7 +5,7 @@
 Runs the study at the paper's size if there is no such run yet, validates chosen designs on the five other trajectories,
 confirms them with full parts and fine meshes, flies the published robots as they are, re-evaluates the published best
 compromises with consistent physics, and writes the page and its figures. `--published` is a folder with the
-published robots (base_robot.urdf, optim1.urdf, optim3.urdf) and designs.csv, the table of their optimisation run.
+published robots (base_robot.urdf, optim1.urdf, optim3.urdf) and designs.csv, the table of their optimization run.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ def search_section(run: Run, data: ReportData) -> str:
             f"{PAPER_SECONDS:.0f} s a design, 60 h",
             f"{mean:.2f} s a design and worker, {run.seconds / 60:.1f} min",
         ),
-        ("programs", "CAD, FEM, simulation and optimisation packages under licence", "this one"),
+        ("programs", "CAD, FEM, simulation and optimization packages under license", "this one"),
     ]
     return table(("", "paper", "here"), rows)
 
@@ -283,7 +283,7 @@ def strength_section(rows: Sequence[Row], evaluations: Mapping[tuple[int, ...], 
 
 # --- figures ----------------------------------------------------------------------------------------------------------
 def draw_fronts(path: Path, data: ReportData, rows: Sequence[Row], flown: Mapping[tuple[int, ...], Evaluation]) -> None:
-    """Published table and our run side by side, in the paper's two axes, thrust as colour."""
+    """Published table and our run side by side, in the paper's two axes, thrust as color."""
     from matplotlib.figure import Figure
 
     with style.style():

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Reads damaged STL files under the address, leak and undefined-behaviour sanitizers.
+# Reads damaged STL files under the address, leak and undefined-behavior sanitizers.
 # Usage: benchmarks/robustness/fuzz_stl.sh [FILES, default 1000000]
 set -eu
 cd "$(dirname "$0")/../.."

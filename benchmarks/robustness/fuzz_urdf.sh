@@ -1,5 +1,5 @@
 #!/bin/sh
-# Loads mutated URDFs under the address, leak and undefined-behaviour sanitizers.
+# Loads mutated URDFs under the address, leak and undefined-behavior sanitizers.
 # Usage: benchmarks/robustness/fuzz_urdf.sh [RUNS, default 100000] [FOLDER of further URDF files to mutate]
 set -eu
 cd "$(dirname "$0")/../.."

@@ -1,6 +1,6 @@
 """Seeded plates with pockets, ribs, cups, bosses, holes, fillets, thin lips and cavities, as closed surfaces.
 
-Lengths in millimetres until `surface`, which gives metres. Every part is one solid; nothing of it is thinner than the
+Lengths in millimeters until `surface`, which gives meters. Every part is one solid; nothing of it is thinner than the
 wall that was drawn for it.
 """
 
@@ -13,7 +13,7 @@ import manifold3d
 import numpy as np
 
 from codesign import fem
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 Solid = manifold3d.Manifold
 CHORDS = 32  # on a full circle
@@ -28,9 +28,9 @@ class GeneratedPart:
     solid: Solid
 
     def surface(self) -> fem.SurfaceMesh:
-        """In metres."""
+        """In meters."""
         mesh = self.solid.to_mesh()
-        points = np.asarray(mesh.vert_properties)[:, :3].astype(float) * MILLIMETRE
+        points = np.asarray(mesh.vert_properties)[:, :3].astype(float) * MILLIMETER
         return fem.SurfaceMesh(points, np.asarray(mesh.tri_verts).astype(np.int32))
 
 
@@ -40,7 +40,7 @@ def box(x0: float, y0: float, z0: float, x1: float, y1: float, z1: float) -> Sol
 
 
 def cylinder(x: float, y: float, z: float, radius: float, height: float) -> Solid:
-    """An upright cylinder on a centre."""
+    """An upright cylinder on a center."""
     return Solid.cylinder(height, radius, radius, CHORDS).translate((x, y, z))
 
 

@@ -44,7 +44,7 @@ PACKAGES = {
 }
 MOST_TRIANGLES = 5_000
 CPU_LIMIT = 150  # s of processor time, for one file
-LARGEST_IN_METRES = 20.0  # a file larger than this is in millimetres
+LARGEST_IN_METERS = 20.0  # a file larger than this is in millimeters
 
 
 def download(cache: Path) -> list[Path]:
@@ -106,7 +106,7 @@ def mesh_file(path: str, connection: Any) -> None:
     try:
         surface = fem.read_stl(path, 1.0)
         extent = float(np.linalg.norm(np.ptp(surface.points, axis=0)))
-        surface = fem.read_stl(path, 1.0 if extent < LARGEST_IN_METRES else 1e-3)
+        surface = fem.read_stl(path, 1.0 if extent < LARGEST_IN_METERS else 1e-3)
         surface, report = fem.repair_surface(surface)
         repaired = report.changed
     except MeshError as error:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = ["Evaluation", "Study", "evaluate", "load_study", "optimize", "resume"]
 
-# Imported when first used: a worker process needs no optimiser, a look at the version needs nothing.
+# Imported when first used: a worker process needs no optimizer, a look at the version needs nothing.
 _HOMES = {
     "Evaluation": "codesign.problem.evaluation",
     "Study": "codesign.chain.study",

@@ -1,4 +1,4 @@
-"""Closed surfaces for tests, written as STL files in millimetres."""
+"""Closed surfaces for tests, written as STL files in millimeters."""
 
 from pathlib import Path
 

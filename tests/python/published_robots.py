@@ -1,7 +1,7 @@
-"""Robots of the published optimisation run, remade from its table by the authors' rule.
+"""Robots of the published optimization run, remade from its table by the authors' rule.
 
 The rule (not this project's own, which replaces inertials whole): start from the published Optim1 URDF; in the bracket
-and forearm links replace mass and the three diagonal entries of the tensor, leaving centre of mass, axes and products
+and forearm links replace mass and the three diagonal entries of the tensor, leaving center of mass, axes and products
 of inertia as they are; move the jets by the formulas below; print every number with five significant digits.
 """
 

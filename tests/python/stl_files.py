@@ -16,7 +16,7 @@ def box(lower, upper, inside_out=False):
 
 
 def stl(path, *facets):
-    """Binary STL of facets in millimetres."""
+    """Binary STL of facets in millimeters."""
     all_facets = np.concatenate(facets)
     record = np.zeros(len(all_facets), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
     record["corners"] = all_facets

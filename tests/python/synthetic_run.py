@@ -115,9 +115,9 @@ def evaluations(count: int, seed: int = 1, steepest: int = 79) -> list[Evaluatio
     levels = np.array(SPACE.levels)
     while len(seen) < count:
         pull = (len(seen) / count) ** 0.7
-        centre = np.array([0, random.integers(0, 8), random.integers(2, 14), random.integers(0, 51)])
+        center = np.array([0, random.integers(0, 8), random.integers(2, 14), random.integers(0, 51)])
         anywhere = random.integers(0, levels)
-        index = np.rint((1 - pull) * anywhere + pull * centre + random.normal(0, 1.0, 4)).astype(int)
+        index = np.rint((1 - pull) * anywhere + pull * center + random.normal(0, 1.0, 4)).astype(int)
         index = np.clip(index, 0, levels - 1)
         if SPACE.variables[0].value(int(index[0])) <= steepest:
             seen[tuple(int(i) for i in index)] = None

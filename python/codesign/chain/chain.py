@@ -36,7 +36,7 @@ from codesign.robot.inertial import Inertial
 from codesign.study.config import StudyConfig
 from codesign.study.parts import make_part
 from codesign.transforms import Matrix
-from codesign.units import GIGA, MEGA, MILLIMETRE
+from codesign.units import GIGA, MEGA, MILLIMETER
 
 CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
 MODES = 3  # natural frequencies of a part, where a study limits the first
@@ -151,7 +151,7 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
         support=stress.support,
         accuracy=stress.accuracy,
         exclusion=stress.exclusion,
-        exclusion_distance=None if stress.exclusion_distance_mm is None else stress.exclusion_distance_mm * MILLIMETRE,
+        exclusion_distance=None if stress.exclusion_distance_mm is None else stress.exclusion_distance_mm * MILLIMETER,
         tolerance=stress.tolerance,
         modes=MODES if _asks_for(config, "first_frequency", "frequencies") else 0,
         buckling=1 if _asks_for(config, "buckling_factor") else 0,
@@ -190,7 +190,7 @@ def _assemble(
 
 
 def _part_key(study: StudyData, part: Part, settings: StressSettings) -> str:
-    """Cache key of a part's numbers: the code, every value of the part (`repr` is exact), how it is analysed."""
+    """Cache key of a part's numbers: the code, every value of the part (`repr` is exact), how it is analyzed."""
     return f"{study.code_hash}/{part.name}/{hashlib.sha256(repr((part, settings)).encode()).hexdigest()[:24]}"
 
 

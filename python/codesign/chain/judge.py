@@ -11,7 +11,7 @@ from codesign.errors import StudyError
 from codesign.problem.evaluation import Status
 from codesign.problem.quantities import FAMILY, MINUS, Quantity, quantity, read
 from codesign.study.config import StudyConfig
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a safety factor of zero
 FLIGHT_MISSED = "flight_missed_share"  # of two lost designs the one that flew longer violates less
@@ -88,7 +88,7 @@ def judge(config: StudyConfig, document: Document, functions: Functions) -> Verd
 
 
 def objectives(config: StudyConfig, document: Document, functions: Functions) -> dict[str, float]:
-    """The minimised numbers by key. Raises: StudyError."""
+    """The minimized numbers by key. Raises: StudyError."""
     found = {}
     for key in config.objectives.keys:
         sign, name = (-1.0, key[1:]) if key.startswith(MINUS) else (1.0, key)
@@ -117,7 +117,7 @@ def limits(config: StudyConfig) -> Iterator[Limit]:
             ("plume_clearance", asked.plume_clearance_min_mm),
         ):
             if gap_mm is not None:
-                yield Limit(quantity(key), least=gap_mm * MILLIMETRE, scale=CLEARANCE_SCALE)
+                yield Limit(quantity(key), least=gap_mm * MILLIMETER, scale=CLEARANCE_SCALE)
     for key, bound in asked.limits.items():
         if bound.minimum is not None:
             yield Limit(quantity(key), least=bound.minimum, scale=abs(bound.minimum) or 1.0)

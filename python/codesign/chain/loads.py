@@ -5,7 +5,7 @@ from __future__ import annotations
 from codesign import fem
 from codesign.parts.load_case import CaseSettings, PartLoad, PressedFace, PushedFace
 from codesign.study.config import LoadConfig, PartConfig, StudyConfig
-from codesign.units import MEGA, MILLIMETRE
+from codesign.units import MEGA, MILLIMETER
 
 
 def case_settings(part: PartConfig, config: StudyConfig) -> tuple[CaseSettings, ...]:
@@ -31,5 +31,5 @@ def part_load(load: LoadConfig) -> PartLoad:
     force = load.force_n or (0.0, 0.0, 0.0)
     if load.point_mm is None and load.moment_n_m is None:
         return PushedFace(load.face, force)
-    point = tuple(x * MILLIMETRE for x in load.point_mm or (0.0, 0.0, 0.0))
+    point = tuple(x * MILLIMETER for x in load.point_mm or (0.0, 0.0, 0.0))
     return fem.AffineTraction(load.face, force, point, load.moment_n_m or (0.0, 0.0, 0.0))

@@ -42,9 +42,9 @@ def shown(value: Any, digits: int = 6) -> str:
 
 def print_evaluation(evaluation: Evaluation) -> None:
     """Text summary of one evaluation."""
-    colour = {"feasible": "green", "infeasible": "yellow", "failed": "red"}[evaluation.status]
+    color = {"feasible": "green", "infeasible": "yellow", "failed": "red"}[evaluation.status]
     design = "  ".join(f"{name}={value_text(value)}" for name, value in evaluation.design.items())
-    out.print(Text.assemble((evaluation.status, f"bold {colour}"), f"  {design}"))
+    out.print(Text.assemble((evaluation.status, f"bold {color}"), f"  {design}"))
     if evaluation.reason:
         out.print(evaluation.reason)
     table = Table(show_header=False, box=None, pad_edge=False)
@@ -67,10 +67,10 @@ def print_evaluation(evaluation: Evaluation) -> None:
 
 
 def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
-    """Analysed and confirmed numbers of each part side by side."""
+    """Analyzed and confirmed numbers of each part side by side."""
     for name, confirmation in confirmations.items():
-        table = Table("", "as analysed", "full, fine mesh", title=name, title_justify="left", box=None, pad_edge=False)
-        both = (confirmation.analysed, confirmation.confirmed)
+        table = Table("", "as analyzed", "full, fine mesh", title=name, title_justify="left", box=None, pad_edge=False)
+        both = (confirmation.analyzed, confirmation.confirmed)
         table.add_row("safety factor", *(_factor(part, 2) for part in both))
         stresses = (f"{part['peak_stress'] / 1e6:.2f} ± {part['stress_error'] / 1e6:.2f}" for part in both)
         table.add_row("peak stress [MPa]", *stresses)
@@ -170,7 +170,7 @@ def print_stress(document: dict[str, Any]) -> None:
     table.add_row("safety factor", f"{known} ({document['material']})")
     peak = f"{document['peak_stress'] / 1e6:.4g} ± {document['stress_error'] / 1e6:.2g} MPa"
     unresolved = "" if document["peak_resolved"] else " (not resolved)"
-    table.add_row("peak stress", f"{peak}{unresolved} at {_millimetres(document['peak_position'])}")
+    table.add_row("peak stress", f"{peak}{unresolved} at {_millimeters(document['peak_position'])}")
     table.add_row("largest stress left out", _describe_left_out(document["left_out"]))
     table.add_row("stress exceeded in 50 mm³", f"{document['stress_50'] / 1e6:.4g} MPa")
     table.add_row("largest displacement", f"{document['max_displacement'] * 1e3:.4g} mm")
@@ -189,7 +189,7 @@ def print_stress(document: dict[str, Any]) -> None:
         out.print(Text.assemble(("warning", "yellow"), f": {warning}"))
 
 
-def _millimetres(position: list[float]) -> str:
+def _millimeters(position: list[float]) -> str:
     return ", ".join(f"{1e3 * x:.2f}" for x in position) + " mm"
 
 
@@ -197,13 +197,13 @@ def _describe_left_out(left_out: dict[str, Any] | None) -> str:
     if left_out is None:
         return "none"
     border = f"{left_out['border_distance'] * 1e3:.2g} mm from a border of a clamp or load"
-    return f"{left_out['stress'] / 1e6:.4g} MPa at {_millimetres(left_out['position'])}, {border}"
+    return f"{left_out['stress'] / 1e6:.4g} MPa at {_millimeters(left_out['position'])}, {border}"
 
 
 def _describe_place(place: dict[str, Any]) -> str:
     bend = f", bends by {place['bend_deg']:.0f}°" if place["bend_deg"] >= 0.5 else ""
     facets = f", {place['facets']} facets" if place["facets"] else ", part of a facet"
-    return f"{place['type']}, {place['area'] * 1e6:.4g} mm² at {_millimetres(place['centroid'])}{bend}{facets}"
+    return f"{place['type']}, {place['area'] * 1e6:.4g} mm² at {_millimeters(place['centroid'])}{bend}{facets}"
 
 
 def _describe_elements(document: dict[str, Any]) -> str:

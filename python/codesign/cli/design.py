@@ -127,7 +127,7 @@ def _write_robot(study: Study, design: Design, components: list[tuple[Component,
 
 
 def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnalysis, folder: Path) -> str:
-    """VTU of a part's analysis, and of the whole part where one half was analysed; returns what the model is in words.
+    """VTU of a part's analysis, and of the whole part where one half was analyzed; returns what the model is in words.
 
     The file names say it too: NAME_simplified_half.vtu, NAME_simplified_whole.vtu.
     """

@@ -35,9 +35,9 @@ UNITS = {
     "evaluation.json": "SI; design values as in the study",
     "bom.csv": "kg, kg/m3",
 }
-LICENCE = (
-    "The licence of codesign covers the program, not what is designed with it: the parts belong to the author of the "
-    "study, and so does the choice of their licence."
+LICENSE = (
+    "The license of codesign covers the program, not what is designed with it: the parts belong to the author of the "
+    "study, and so does the choice of their license."
 )
 OPEN = "tolerances, fits, threads, surface finish, heat treatment and coating: these files do not state them"
 
@@ -89,7 +89,7 @@ class Order:
             "parts": [self._part(part, evaluation, models) for part in distinct_parts(self.components)],
             "units": UNITS,
             "not_stated": OPEN,
-            "licence": LICENCE,
+            "license": LICENSE,
             "files": sorted(files),
         }
         return json.dumps(document, indent=1)
@@ -160,11 +160,11 @@ class Order:
                     ["part", "load case", "model", "safety factor", "peak stress"], self._strength(evaluation, models)
                 ),
                 "In `stress/*.vtu`, the peak stress is read where `counts_for_peak` is 1; the strings in the field "
-                "data say what was analysed.\n",
+                "data say what was analyzed.\n",
                 "## Units\n",
                 *_table(["files", "units"], [[f"`{files}`", unit] for files, unit in UNITS.items()]),
                 f"Not stated, to be agreed with the workshop: {OPEN.partition(':')[0]}.\n",
-                f"{LICENCE}\n",
+                f"{LICENSE}\n",
             ]
         )
 

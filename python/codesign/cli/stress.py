@@ -18,7 +18,7 @@ from codesign.cli.stress_options import StressInputError, parse_load, parse_sele
 from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
 from codesign.errors import ModelError
 from codesign.parts.load_case import strength_document
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 LEFT_OUT_WARNED = 1.1  # times the peak: a stress left out that is a warning
 
@@ -53,7 +53,7 @@ def stress_document(
     """Meshes, solves and gives the JSON document of `codesign stress` (docs/fem.md); SI units.
 
     Args:
-        path: STL file. scale: metres per unit of the file, also of the selections' coordinates.
+        path: STL file. scale: meters per unit of the file, also of the selections' coordinates.
         fix: selections held in all directions. load: texts `SEL: fx fy fz`.
         edge_length_mm: of the elements; from the local wall if absent. vtu, png: the stress field, a picture of it.
         exclusion_mm: the peak stress is read farther than this from borders of clamps and from sharp pocket edges that
@@ -72,8 +72,8 @@ def stress_document(
     for text in load:
         place, force = parse_load(text, scale)
         asked.append(PlacedText(text.rpartition(":")[0].strip(), place, force))
-    edge_length = None if edge_length_mm is None else edge_length_mm * MILLIMETRE
-    exclusion = None if exclusion_mm is None else exclusion_mm * MILLIMETRE
+    edge_length = None if edge_length_mm is None else edge_length_mm * MILLIMETER
+    exclusion = None if exclusion_mm is None else exclusion_mm * MILLIMETER
     surface, repaired = load_file(path, scale, repair)
     solved = _solve(surface, asked, material, edge_length, exclusion, smooth, simplify)
     _write_files(path, material, solved, vtu, png)
@@ -171,10 +171,10 @@ def _warnings(solved: Solved) -> list[str]:
     if not result.peak_resolved:
         found.append(
             f"the peak stress is not resolved: its estimated error is {result.stress_error / result.peak_stress:.0%} "
-            f"of it; give a smaller --edge-length than {solved.size.smallest / MILLIMETRE:.3g} mm"
+            f"of it; give a smaller --edge-length than {solved.size.smallest / MILLIMETER:.3g} mm"
         )
     if result.left_out.stress > LEFT_OUT_WARNED * result.peak_stress > 0.0:
-        at = ", ".join(f"{x / MILLIMETRE:.2f}" for x in result.left_out.position)
+        at = ", ".join(f"{x / MILLIMETER:.2f}" for x in result.left_out.position)
         found.append(
             f"the stress left out is {result.left_out.stress / result.peak_stress:.2g} times the peak, at {at} mm: "
             "beside ideal clamps and at sharp edges stress grows without end under refinement; model the fillet there, "

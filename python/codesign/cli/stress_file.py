@@ -9,17 +9,17 @@ import numpy as np
 
 from codesign import fem
 from codesign.errors import MeshError
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
-SMALLEST = 1e-3  # m: a smaller part is more likely a file in metres
-LARGEST = 20.0  # m: a larger part is more likely a file in millimetres
+SMALLEST = 1e-3  # m: a smaller part is more likely a file in meters
+LARGEST = 20.0  # m: a larger part is more likely a file in millimeters
 MOST_DISPLACEMENT = 0.1  # of the extent: beyond it, small displacements are no sensible assumption
 
 
 def load_file(path: Path, scale: float, repair: bool) -> tuple[fem.SurfaceMesh, fem.RepairReport | None]:
     """The solid of an STL or STEP file with faces by angle, and what its repair changed if that was asked for.
 
-    scale: metres per unit of an STL file; STEP files know their unit.
+    scale: meters per unit of an STL file; STEP files know their unit.
 
     Raises: MeshError: what is wrong with the file, and whether --repair would help.
     """
@@ -112,19 +112,19 @@ def describe_repair(repair: dict[str, Any]) -> str:
     volume = f"{after * 1e9:.4g} mm³" if before is None else f"{before * 1e9:.4g} → {after * 1e9:.4g} mm³"
     counts = ", ".join(f"{repair[key]['before']} → {repair[key]['after']} {key}" for key in ("triangles", "bodies"))
     area = f"{repair['area']['before'] * 1e6:.4g} → {repair['area']['after'] * 1e6:.4g} mm²"
-    shift, tolerance = (repair[key] / MILLIMETRE for key in ("largest_shift", "tolerance"))
+    shift, tolerance = (repair[key] / MILLIMETER for key in ("largest_shift", "tolerance"))
     moved = f"largest shift {shift:.2g} mm (tolerance {tolerance:.2g})"
     return f"{', '.join(done)}: volume {volume}, area {area}, {counts}, {moved}"
 
 
 def unit_hints(surface: fem.SurfaceMesh, scale: float, max_displacement: float) -> list[str]:
-    """Doubts about the units of a file read with `scale` metres per unit, from size and displacement [m]."""
+    """Doubts about the units of a file read with `scale` meters per unit, from size and displacement [m]."""
     box = np.ptp(surface.points, axis=0)
     extent = float(np.linalg.norm(box))
-    size = " x ".join(f"{side / MILLIMETRE:.3g}" for side in box) + " mm"
+    size = " x ".join(f"{side / MILLIMETER:.3g}" for side in box) + " mm"
     hints = []
-    if extent < SMALLEST and scale >= MILLIMETRE:
-        hints.append(f"the part is only {size}: is the file in metres (--scale {1e3 * scale:g})?")
+    if extent < SMALLEST and scale >= MILLIMETER:
+        hints.append(f"the part is only {size}: is the file in meters (--scale {1e3 * scale:g})?")
     elif extent > LARGEST:
         hints.append(f"the part is {size}: is the file in smaller units (--scale {1e-3 * scale:g})?")
     if max_displacement > MOST_DISPLACEMENT * extent:

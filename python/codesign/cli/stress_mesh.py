@@ -9,7 +9,7 @@ from typing import Any
 
 from codesign import fem
 from codesign.errors import MeshError
-from codesign.fem.selections import Labelled, Place, label_surface
+from codesign.fem.selections import Labeled, Place, label_surface
 
 COARSE = 20_000  # triangles: a surface with more is no coarse tessellation
 FACET_DISTANCE = 0.06  # of sides of elements to the surface, relative to their size, as in fem.tetrahedralize
@@ -39,7 +39,7 @@ def _smoothing(report: fem.SmoothReport) -> dict[str, Any]:
 
 def mesh_places(
     surface: fem.SurfaceMesh, places: Sequence[Place], size: fem.SizeField, smooth: bool, simplify: bool
-) -> tuple[fem.TetMesh, Labelled, dict[str, Any] | None]:
+) -> tuple[fem.TetMesh, Labeled, dict[str, Any] | None]:
     """The mesh, the places on it, and the smoothing; the facets themselves if their smooth surface cannot be meshed.
 
     Places are looked up on the facets of the file; the pieces of a facet belong to its place.
@@ -58,20 +58,20 @@ def mesh_places(
 
 
 def _mesh_either(
-    labelled: fem.SurfaceMesh,
+    labeled: fem.SurfaceMesh,
     plain: Callable[[], fem.SurfaceMesh],
-    named: Labelled,
+    named: Labeled,
     places: Sequence[Place],
     size: fem.SizeField,
     simplify: bool,
-) -> tuple[fem.TetMesh, Labelled]:
+) -> tuple[fem.TetMesh, Labeled]:
     """The mesh and the places on it, with exact borders unless they are too ragged for the edge length.
 
     plain: makes the surface without the places' borders, which is rarely needed.
     """
     tetrahedralize = fem.tetrahedralize if simplify else partial(fem.tetrahedralize, simplify=0.0)
     try:
-        return tetrahedralize(labelled, size), named
+        return tetrahedralize(labeled, size), named
     except MeshError:
         mesh = tetrahedralize(plain(), size)
         return mesh, replace(named, selections=[place.on_mesh() for place in places])

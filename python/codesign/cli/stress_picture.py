@@ -1,4 +1,4 @@
-"""Picture of `codesign stress`: the part coloured by stress, clamps in one colour, loads as arrows."""
+"""Picture of `codesign stress`: the part colored by stress, clamps in one color, loads as arrows."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ INNER = 4  # flat triangles that a side of an element is drawn with
 def write_stress_picture(
     mesh: fem.TetMesh, result: fem.StaticResult, places: Sequence[CaughtPlace], name: str, path: Path
 ) -> Path:
-    """PNG of a part coloured by von Mises stress up to its peak, clamps dark, an arrow for each load."""
+    """PNG of a part colored by von Mises stress up to its peak, clamps dark, an arrow for each load."""
     from matplotlib.figure import Figure
 
     bodies = _bodies(mesh, result, places)
@@ -54,7 +54,7 @@ def write_stress_picture(
 
 
 def _bodies(mesh: fem.TetMesh, result: fem.StaticResult, places: Sequence[CaughtPlace]) -> list[Body]:
-    """The free surface in the colours of its stress, and the clamps."""
+    """The free surface in the colors of its stress, and the clamps."""
     field = stress_field(mesh, result)
     held = np.zeros(len(mesh.boundary), dtype=bool)
     for place in places:

@@ -11,8 +11,8 @@ import numpy as np
 from codesign import fem
 from codesign.cli.stress_options import StressInputError
 from codesign.fem.places import Caught, caught
-from codesign.fem.selections import Box, Facing, Labelled, Place
-from codesign.units import MILLIMETRE
+from codesign.fem.selections import Box, Facing, Labeled, Place
+from codesign.units import MILLIMETER
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class CaughtPlace:
         return [f"{self.asked.kind} {self.asked.text} {doubt}" for doubt in self.found.warnings()]
 
 
-def caught_places(asked: Sequence[PlacedText], named: Labelled, mesh: fem.TetMesh, size: float) -> list[CaughtPlace]:
+def caught_places(asked: Sequence[PlacedText], named: Labeled, mesh: fem.TetMesh, size: float) -> list[CaughtPlace]:
     """What every place caught on a mesh of the edge length `size` [m].
 
     Raises: StressInputError: a place caught nothing; the message names it and says what to do.
@@ -73,9 +73,9 @@ def _why_empty(place: Place, surface: fem.SurfaceMesh, size: float) -> str:
         return f"selects nothing: no facet looks there within {place.angle:g}°; give a larger angle"
     lower, upper = surface.points.min(axis=0), surface.points.max(axis=0)
     if isinstance(place, Box) and (np.any(place.lower > upper) or np.any(place.upper < lower)):
-        corners = ", ".join(f"{x / MILLIMETRE:.4g}" for x in (*lower, *upper))
+        corners = ", ".join(f"{x / MILLIMETER:.4g}" for x in (*lower, *upper))
         return f"selects nothing: the box lies outside of the part, which fills {corners} mm"
     return (
         "selects nothing: the box holds no whole facet of the surface and no whole side of an element, it is smaller "
-        f"than the elements (edge length {size / MILLIMETRE:.3g} mm); enlarge the box or give a smaller --edge-length"
+        f"than the elements (edge length {size / MILLIMETER:.3g} mm); enlarge the box or give a smaller --edge-length"
     )

@@ -14,7 +14,7 @@ Edge = tuple[int, int]
 
 
 def cut_by_box(surface: fem.SurfaceMesh, lower: ArrayLike, upper: ArrayLike) -> fem.SurfaceMesh:
-    """The same surface with the facets that meet a box [m] cut along its planes; neighbours share the new corners."""
+    """The same surface with the facets that meet a box [m] cut along its planes; neighbors share the new corners."""
     low, high = np.asarray(lower, dtype=float), np.asarray(upper, dtype=float)
     points = [np.asarray(point) for point in surface.points]
     pieces = [(tuple(row), face) for row, face in zip(surface.triangles.tolist(), surface.face, strict=True)]

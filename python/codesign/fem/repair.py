@@ -29,7 +29,7 @@ class RepairReport:
         doubled, flat: facets dropped: written twice or walls without thickness; without height.
         t_junctions: corners found on edges, where the facet was split.
         merged_points: ends of open edges merged.
-        turned: facets turned like their neighbours. turned_shells: shells that were inside-out.
+        turned: facets turned like their neighbors. turned_shells: shells that were inside-out.
         united: bodies united into one or several.
         simplified: whether tiny triangles were removed to end crossings.
         volume, area, triangles, bodies: before and after; the volume before is None for an open surface. [m³, m²]
@@ -77,7 +77,7 @@ def repair_surface(surface: SurfaceMesh, tolerance: float | None = None) -> tupl
     if tolerance is None:
         tolerance = TOLERANCE * float(np.linalg.norm(np.ptp(surface.points, axis=0)))
     if not (math.isfinite(tolerance) and tolerance > 0.0):
-        raise ValueError(f"tolerance = {tolerance}: a positive number of metres is needed")
+        raise ValueError(f"tolerance = {tolerance}: a positive number of meters is needed")
     reason = _fault(surface)
     points, triangles = np.array(surface.points), np.array(surface.triangles, dtype=np.int64)
     if not reason:
@@ -133,7 +133,7 @@ def _attempts(
 
 
 def _stitched(points: Points, triangles: Triangles, gap: float, report: RepairReport) -> tuple[Triangles, RepairReport]:
-    """Facets dropped, T-junctions split, gaps closed, neighbours turned the same way."""
+    """Facets dropped, T-junctions split, gaps closed, neighbors turned the same way."""
     high = stitching.without_flat(points, triangles, min(gap, 1e-3 * report.tolerance))
     single = stitching.without_doubled(high)
     split, junctions = stitching.split_t_junctions(points, single, gap)

@@ -15,7 +15,7 @@ from codesign.fem.cut import cut_by_box
 from codesign.fem.holes import holes
 from codesign.fem.model import MAX_BEND_DEG
 from codesign.names import nearest
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 SAME_RADIUS = 0.01  # relative
 
@@ -109,9 +109,9 @@ class Holes:
         found = holes(surface)
         chosen = [i for i, hole in found.items() if abs(hole.radius - self.radius) <= SAME_RADIUS * self.radius]
         if not chosen:
-            radii = sorted({f"{hole.radius / MILLIMETRE:.4g}" for hole in found.values()})
+            radii = sorted({f"{hole.radius / MILLIMETER:.4g}" for hole in found.values()})
             known = f"the holes have radii of {', '.join(radii)} mm" if radii else "there is no round hole"
-            raise ModelError(f"no hole of radius {self.radius / MILLIMETRE:g} mm; {known}")
+            raise ModelError(f"no hole of radius {self.radius / MILLIMETER:g} mm; {known}")
         facets: Triangles = np.isin(np.asarray(surface.face), chosen)
         return facets
 
@@ -124,7 +124,7 @@ Place = Near | Box | Facing | NamedFace | Holes
 
 
 @dataclass(frozen=True)
-class Labelled:
+class Labeled:
     """A surface with a named face for each place (and each overlap), and the places as selections of its mesh.
 
     masks: (m,) of each place, which triangles of the surface belong to it.
@@ -135,7 +135,7 @@ class Labelled:
     masks: list[Triangles]
 
 
-def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> Labelled:
+def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> Labeled:
     """Names the places on a surface.
 
     A box that holds no whole triangle cuts those that it meets. One that holds some also takes sides of elements that
@@ -147,11 +147,11 @@ def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> Labelled
     masks = np.array([place.triangles(surface) for place in places])
     kinds, face = np.unique(masks, axis=1, return_inverse=True)
     names = [f"region {i}" if kind.any() else "" for i, kind in enumerate(kinds.T)]
-    labelled = fem.SurfaceMesh(surface.points, surface.triangles, face.ravel().tolist(), names)
+    labeled = fem.SurfaceMesh(surface.points, surface.triangles, face.ravel().tolist(), names)
     selections = []
     for place, kind in zip(places, kinds, strict=True):
         parts: list[str | fem.Selection] = [name for name, chosen in zip(names, kind, strict=True) if chosen]
         if isinstance(place, Box) or not parts:
             parts.append(place.on_mesh())
         selections.append(fem.select_union(*parts))
-    return Labelled(labelled, selections, list(masks))
+    return Labeled(labeled, selections, list(masks))

@@ -64,7 +64,7 @@ class Buckling:
 
 
 class StaticSystem:
-    """A supported part, factorised once for any number of load cases.
+    """A supported part, factorized once for any number of load cases.
 
     Args:
         mesh: ten-node tetrahedra.
@@ -77,7 +77,7 @@ class StaticSystem:
         stress_volume: [m³] `stress_50` is the von Mises stress exceeded in this volume of the part.
         copies: 2 if the mesh is one half of a symmetric part: work and stress_volume then count the whole.
         residual_tolerance: largest relative residual accepted.
-        solver: "direct" factorises, "iterative" (conjugate gradients, two-level preconditioner) needs far less memory;
+        solver: "direct" factorizes, "iterative" (conjugate gradients, two-level preconditioner) needs far less memory;
             "automatic" takes the factor if it fits into memory_limit and is the faster way for one load case.
         memory_limit: [bytes] for the factor.
 

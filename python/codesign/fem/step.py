@@ -37,11 +37,11 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTo
 from codesign._core.fem import SurfaceMesh
 from codesign.errors import MeshError
 from codesign.geometry.occt import silent
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 CHORD = 3e-5  # m: triangles stay this near to the exact faces
-ANGLE = 0.35  # rad between neighbouring chords of a curve: 18 on a full circle at least
-MERGE = 1e-6  # mm: points of neighbouring faces this close are one
+ANGLE = 0.35  # rad between neighboring chords of a curve: 18 on a full circle at least
+MERGE = 1e-6  # mm: points of neighboring faces this close are one
 KINDS = {
     GeomAbs_SurfaceType.GeomAbs_Plane: "plane",
     GeomAbs_SurfaceType.GeomAbs_Cylinder: "cylinder",
@@ -91,7 +91,7 @@ class StepPart:
 
 
 def load_step(path: str | os.PathLike[str], *, solid: str | None = None, chord: float = CHORD) -> StepPart:
-    """One solid of a STEP file as a closed surface; lengths in metres whatever the file's unit.
+    """One solid of a STEP file as a closed surface; lengths in meters whatever the file's unit.
 
     Args:
         path: STEP file of any schema. solid: its name, or its number from 1, where the file holds several.
@@ -104,10 +104,10 @@ def load_step(path: str | os.PathLike[str], *, solid: str | None = None, chord: 
     described = tuple(
         _describe(i + 1, face, _of_same(names, face) or "", _of_same(colors, face)) for i, face in enumerate(faces)
     )
-    points, triangles, owner = _triangulate(shape, faces, chord / MILLIMETRE)
+    points, triangles, owner = _triangulate(shape, faces, chord / MILLIMETER)
     labels = list(dict.fromkeys(face.name for face in described))
     index = np.array([labels.index(face.name) for face in described])
-    surface = SurfaceMesh(points * MILLIMETRE, triangles, index[owner].tolist(), labels)
+    surface = SurfaceMesh(points * MILLIMETER, triangles, index[owner].tolist(), labels)
     return StepPart(name, surface, described, owner)
 
 
@@ -172,7 +172,7 @@ def _solids_of(label: TDF_Label, location: TopLoc_Location, colors: object, name
 
 def _chosen(found: list[Solid], wanted: str | None, path: Path) -> Solid:
     if not found:
-        raise MeshError(f"{path}: the file holds no solid (surfaces without volume cannot be analysed)")
+        raise MeshError(f"{path}: the file holds no solid (surfaces without volume cannot be analyzed)")
     if wanted is None and len(found) == 1:
         return found[0]
     listed = ", ".join(
@@ -202,9 +202,9 @@ def _describe(number: int, face: TopoDS_Face, name: str, color: str | None) -> S
         number,
         name,
         kind,
-        None if radius is None else float(f"{radius:.9g}") * MILLIMETRE,
+        None if radius is None else float(f"{radius:.9g}") * MILLIMETER,
         hollow,
-        properties.Mass() * MILLIMETRE**2,
+        properties.Mass() * MILLIMETER**2,
         color,
     )
 

@@ -1,6 +1,6 @@
 """Makes a triangle soup a closed, oriented surface where only small faults of the file prevent it.
 
-Arrays throughout: points (n, 3) in metres, triangles (m, 3) indices. Nothing is invented: holes wider than the
+Arrays throughout: points (n, 3) in meters, triangles (m, 3) indices. Nothing is invented: holes wider than the
 tolerance stay open.
 """
 
@@ -146,11 +146,11 @@ def merge_open_points(points: Points, triangles: Triangles, tolerance: float) ->
 
 
 def oriented(triangles: Triangles) -> tuple[Triangles, int]:
-    """Neighbours turned the same way, each piece like its first triangle. Returns: triangles, how many were turned."""
+    """Neighbors turned the same way, each piece like its first triangle. Returns: triangles, how many were turned."""
     directed = edges_of(triangles)
     if len(np.unique(directed, axis=0)) == len(directed):
         return triangles, 0
-    first, second, same = _neighbours(triangles)
+    first, second, same = _neighbors(triangles)
     beside: list[list[tuple[int, bool]]] = [[] for _ in triangles]
     for s, t, turned in zip(first.tolist(), second.tolist(), same.tolist(), strict=True):
         beside[s].append((t, turned))
@@ -175,14 +175,14 @@ def oriented(triangles: Triangles) -> tuple[Triangles, int]:
 
 def shells_of(triangles: Triangles) -> NDArray[np.int64]:
     """Number of the shell of each triangle: what is connected through edges of exactly two triangles."""
-    first, second, _ = _neighbours(triangles)
+    first, second, _ = _neighbors(triangles)
     count = len(triangles)
     graph = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
     shells: NDArray[np.int64] = connected_components(graph, directed=False)[1].astype(np.int64)
     return shells
 
 
-def _neighbours(triangles: Triangles) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
+def _neighbors(triangles: Triangles) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:
     """Pairs of triangles at edges that exactly two use, and whether both run along it in the same direction."""
     edges = edges_of(triangles)
     number, uses = uses_of(edges)

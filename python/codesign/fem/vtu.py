@@ -1,4 +1,4 @@
-"""Stress fields as VTU files: what was analysed, in which units, and where the peak stress is not read."""
+"""Stress fields as VTU files: what was analyzed, in which units, and where the peak stress is not read."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class StressModel:
 
     @classmethod
     def of(cls, mesh: TetMesh, result: StaticResult) -> StressModel:
-        """The analysed model.
+        """The analyzed model.
 
         At the nodes displacement, stress, von Mises stress and `counts_for_peak`: 0 where the peak stress, and with it
         the safety factor, is not read. In the elements `error`: how far their own stress is from the recovered one.

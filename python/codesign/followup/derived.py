@@ -1,4 +1,4 @@
-"""Studies made from a study: to the optimiser they are studies like any other."""
+"""Studies made from a study: to the optimizer they are studies like any other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Robust optimisation: a study whose objectives are the mean or the worst over several tasks."""
+"""Robust optimization: a study whose objectives are the mean or the worst over several tasks."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class RobustStudy(DerivedStudy):
     def evaluate(
         self, design: Mapping[str, float], /, trajectory: str | None = None, cache: PartCache | None = None
     ) -> Evaluation:
-        """One design on all trajectories (or on the one named); its parts are analysed once."""
+        """One design on all trajectories (or on the one named); its parts are analyzed once."""
         cache = cache if cache is not None else MemoryCache()
         names = self.trajectories if trajectory is None else (trajectory,)
         results = [self.study.evaluate(design, trajectory=name, cache=cache) for name in names]

@@ -72,7 +72,7 @@ def sensitivity(
         run = resume(out, study=problem, **resources)
     else:
         run = run_search(problem, Settings.listing(grids), out, **resources)
-    return analyse(run.space, grids, {r.grid: r.evaluation for r in run.search_records}, outputs, seed)
+    return analyze(run.space, grids, {r.grid: r.evaluation for r in run.search_records}, outputs, seed)
 
 
 def saltelli_grid(space: DesignSpace, samples: int, seed: int) -> list[Grid]:
@@ -83,7 +83,7 @@ def saltelli_grid(space: DesignSpace, samples: int, seed: int) -> list[Grid]:
     return grid_points(np.asarray(unit), space.levels)
 
 
-def analyse(
+def analyze(
     space: DesignSpace,
     grids: Sequence[Grid],
     evaluations: dict[Grid, Evaluation],
@@ -109,9 +109,9 @@ def _indices(space: DesignSpace, output: str, values: npt.NDArray[np.float64], s
     counts = (len(complete), len(blocks))
     if len(complete) < 2 or np.ptp(complete) == 0.0:
         return Sensitivity(output, space.names, None, None, None, None, *counts)
-    centred = complete.ravel() - complete.mean()
+    centered = complete.ravel() - complete.mean()
     result = _salib("analyze.sobol").analyze(
-        _definition(space), centred, calc_second_order=False, num_resamples=RESAMPLES, seed=seed
+        _definition(space), centered, calc_second_order=False, num_resamples=RESAMPLES, seed=seed
     )
     first, first_interval, total, total_interval = (
         tuple(float(value) for value in result[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")

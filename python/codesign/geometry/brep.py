@@ -191,15 +191,15 @@ def _wire(loop: Loop, frame: Frame) -> tuple[TopoDS_Wire, list[TopoDS_Edge]]:
     edges: list[TopoDS_Edge] = []
     for k, edge in enumerate(loop.edges):
         here, there = vertices[k], vertices[(k + 1) % len(vertices)]
-        if edge.centre is None:
+        if edge.center is None:
             edges.append(BRepBuilderAPI_MakeEdge(here, there).Edge())
             continue
         axis: Triple = frame.z if edge.sweep > 0.0 else (-frame.z[0], -frame.z[1], -frame.z[2])
-        centre = frame.point(*edge.centre)
+        center = frame.point(*edge.center)
         start = frame.point(*corners[k])
-        towards = gp_Dir(*(s - c for s, c in zip(start, centre, strict=True)))
-        radius = float(np.hypot(corners[k][0] - edge.centre[0], corners[k][1] - edge.centre[1]))
-        circle = gp_Circ(gp_Ax2(gp_Pnt(*centre), gp_Dir(*axis), towards), radius)
+        towards = gp_Dir(*(s - c for s, c in zip(start, center, strict=True)))
+        radius = float(np.hypot(corners[k][0] - edge.center[0], corners[k][1] - edge.center[1]))
+        circle = gp_Circ(gp_Ax2(gp_Pnt(*center), gp_Dir(*axis), towards), radius)
         if abs(edge.sweep) == FULL_TURN:
             edges.append(BRepBuilderAPI_MakeEdge(circle, here, here).Edge())
         else:

@@ -8,7 +8,7 @@ import numpy as np
 
 from codesign.geometry.profile import Vector
 from codesign.geometry.tessellate import Indices
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ def settled(coarse: Vector, fine: Vector) -> bool:
 
 
 def _central(moments: Vector) -> Vector:
-    """(4,) volume and integrals of xx, yy, zz about the centre of mass."""
+    """(4,) volume and integrals of xx, yy, zz about the center of mass."""
     com = moments[1:4] / moments[0]
     return np.concatenate((moments[:1], moments[4:7] - moments[0] * com**2))
 
@@ -75,9 +75,9 @@ def extrapolate(coarse: Vector, fine: Vector, finest: Vector | None = None) -> V
 
 def mass_properties(moments: Vector, density: float) -> MassProperties:
     """Mass properties from volume moments in mm (see `volume_moments`) and a density [kg/m³]."""
-    volume = float(moments[0]) * MILLIMETRE**3
-    com = moments[1:4] / moments[0] * MILLIMETRE
-    xx, yy, zz, xy, yz, zx = moments[4:] * MILLIMETRE**5 * density
+    volume = float(moments[0]) * MILLIMETER**3
+    com = moments[1:4] / moments[0] * MILLIMETER
+    xx, yy, zz, xy, yz, zx = moments[4:] * MILLIMETER**5 * density
     second = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
     mass = volume * density
     about_com = second - mass * np.outer(com, com)

@@ -17,7 +17,7 @@ from codesign.files import write_bytes
 from codesign.geometry.plate import lay_out
 from codesign.geometry.profile import Vector
 from codesign.geometry.solid import Solid
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 _Y_UP, _Z_UP = "y up", "z up"  # frames of a GLB scene
 _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -40,7 +40,7 @@ def write_3mf(
     counts: Mapping[str, int] | None = None,
     title: str = "",
 ) -> None:
-    """3MF in mm with one named object per solid; its copies lie side by side on the plane z = 0, turned as modelled.
+    """3MF in mm with one named object per solid; its copies lie side by side on the plane z = 0, turned as modeled.
 
     counts: how many of each are wanted; one if absent. title: of the whole file.
     """
@@ -90,7 +90,7 @@ def write_3mf(
 def write_glb(
     meshes: Mapping[str, Solid], nodes: Sequence[tuple[str, str, Vector]], path: str | os.PathLike[str]
 ) -> None:
-    """Binary glTF 2.0 in metres: meshes by name, placed by nodes (name, mesh name, root_T_node (4, 4) [m]).
+    """Binary glTF 2.0 in meters: meshes by name, placed by nodes (name, mesh name, root_T_node (4, 4) [m]).
 
     glTF has y up: a root node turns our z there. Without normals in the file, viewers shade every triangle flat.
     Raises: ValueError if two nodes have one name.
@@ -108,7 +108,7 @@ def write_glb(
     scene.graph.update(_Z_UP, _Y_UP, matrix=[[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
     for name, solid in meshes.items():
         visual = TextureVisuals(material=metal)  # type: ignore[no-untyped-call]
-        scene.geometry[name] = Trimesh(solid.points * MILLIMETRE, solid.triangles, process=False, visual=visual)
+        scene.geometry[name] = Trimesh(solid.points * MILLIMETER, solid.triangles, process=False, visual=visual)
     for name, mesh, pose in nodes:
         scene.graph.update(name, _Z_UP, matrix=pose, geometry=mesh)
     content = scene.export(file_type="glb", include_normals=False, tree_postprocessor=_signed)

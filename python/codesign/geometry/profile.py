@@ -40,29 +40,29 @@ class Resolution:
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """A line, or an arc about `centre` over `sweep` [rad, left turn positive], from the previous point to `end`."""
+    """A line, or an arc about `center` over `sweep` [rad, left turn positive], from the previous point to `end`."""
 
     end: tuple[float, float]
     face: str = ""
-    centre: tuple[float, float] | None = None
+    center: tuple[float, float] | None = None
     sweep: float = 0.0
 
     def middle(self, start: tuple[float, float]) -> tuple[float, float]:
         """The point half way along the edge, which leaves from `start`."""
-        if self.centre is None:
+        if self.center is None:
             return (0.5 * (start[0] + self.end[0]), 0.5 * (start[1] + self.end[1]))
-        cx, cy = self.centre
+        cx, cy = self.center
         angle = math.atan2(start[1] - cy, start[0] - cx) + 0.5 * self.sweep
         radius = math.hypot(start[0] - cx, start[1] - cy)
         return (cx + radius * math.cos(angle), cy + radius * math.sin(angle))
 
     def directions(self, start: tuple[float, float]) -> tuple[float, float]:
         """Angles [rad] of the direction of travel at both ends of the edge, which leaves from `start`."""
-        if self.centre is None:
+        if self.center is None:
             angle = math.atan2(self.end[1] - start[1], self.end[0] - start[0])
             return angle, angle
         quarter = math.copysign(0.5 * math.pi, self.sweep)
-        angle = math.atan2(start[1] - self.centre[1], start[0] - self.centre[0]) + quarter
+        angle = math.atan2(start[1] - self.center[1], start[0] - self.center[0]) + quarter
         return angle, angle + self.sweep
 
 
@@ -95,10 +95,10 @@ class Loop:
         area, (x0, y0) = 0.0, self.start
         for edge in self.edges:
             x1, y1 = edge.end
-            if edge.centre is None:
+            if edge.center is None:
                 area += 0.5 * (x0 * y1 - x1 * y0)
             else:
-                cx, cy = edge.centre
+                cx, cy = edge.center
                 squared_radius = (x1 - cx) ** 2 + (y1 - cy) ** 2
                 area += 0.5 * (squared_radius * edge.sweep + cx * (y1 - y0) - cy * (x1 - x0))
             x0, y0 = x1, y1
@@ -113,12 +113,12 @@ class Loop:
             x1, y1 = edge.end
             cross = (x0 * y1 - x1 * y0) / 6.0  # triangle with the origin
             mx, my = mx + cross * (x0 + x1), my + cross * (y0 + y1)
-            if edge.centre is not None:  # segment between chord and arc
-                (cx, cy), sweep = edge.centre, edge.sweep
+            if edge.center is not None:  # segment between chord and arc
+                (cx, cy), sweep = edge.center, edge.sweep
                 r = math.hypot(x1 - cx, y1 - cy)
                 area = 0.5 * r * r * (sweep - math.sin(sweep))
                 middle = math.atan2(y0 - cy, x0 - cx) + 0.5 * sweep
-                reach = 2.0 / 3.0 * r**3 * math.sin(0.5 * sweep) ** 3  # moment about the centre, along the middle
+                reach = 2.0 / 3.0 * r**3 * math.sin(0.5 * sweep) ** 3  # moment about the center, along the middle
                 mx += area * cx + reach * math.cos(middle)
                 my += area * cy + reach * math.sin(middle)
             x0, y0 = x1, y1
@@ -132,8 +132,8 @@ class Loop:
         for number, edge in enumerate(self.edges):
             count = 1
             points.append(np.array([[x0, y0]]))
-            if edge.centre is not None:
-                cx, cy = edge.centre
+            if edge.center is not None:
+                cx, cy = edge.center
                 radius = math.hypot(x0 - cx, y0 - cy)
                 count = resolution.arc_segments(radius, edge.sweep)
                 angles = math.atan2(y0 - cy, x0 - cx) + edge.sweep * np.arange(1, count) / count
@@ -196,7 +196,7 @@ class _Corner:
 class Path:
     """Outline drawn edge by edge from a first point; `close()` gives the profile. Each step returns a new path.
 
-    Path(0, 0).line(40, 0).line(40, 20, radius=3).arc(0, 20, centre=(20, 20), turn="left").close()
+    Path(0, 0).line(40, 0).line(40, 20, radius=3).arc(0, 20, center=(20, 20), turn="left").close()
     """
 
     __slots__ = ("_corners", "_start")
@@ -216,9 +216,9 @@ class Path:
         """Straight to (x, y). If the next edge is a line too, the corner there can be rounded or chamfered."""
         return self._then(_Corner(Edge((float(x), float(y)), face), radius, chamfer))
 
-    def arc(self, x: float, y: float, *, centre: tuple[float, float], turn: str = "left", face: str = "") -> Path:
-        """Circular arc to (x, y) about `centre`, turning "left" (counter-clockwise) or "right"."""
-        (x0, y0), (cx, cy) = self._here, centre
+    def arc(self, x: float, y: float, *, center: tuple[float, float], turn: str = "left", face: str = "") -> Path:
+        """Circular arc to (x, y) about `center`, turning "left" (counter-clockwise) or "right"."""
+        (x0, y0), (cx, cy) = self._here, center
         r0, r1 = math.hypot(x0 - cx, y0 - cy), math.hypot(x - cx, y - cy)
         if abs(r0 - r1) > 1e-9 * max(r0, r1, 1.0):
             raise GeometryError(f"arc from ({x0:g}, {y0:g}) to ({x:g}, {y:g}): radii {r0!r} and {r1!r} differ")
@@ -239,7 +239,7 @@ class Path:
             if not size:
                 edges.append(corner.edge)
                 continue
-            if corner.edge.centre or following.edge.centre or following is corners[0]:
+            if corner.edge.center or following.edge.center or following is corners[0]:
                 raise GeometryError(f"corner {corner.edge.end}: only a corner between two lines can be rounded")
             before = edges[-1].end if edges else self._start
             edges += _cut_corner(before, corner, following.edge.end)
@@ -257,16 +257,16 @@ def _cut_corner(before: tuple[float, float], corner: _Corner, after: tuple[float
     reach = corner.chamfer or corner.radius / math.tan(half_angle)
     if reach > min(lengths) * (1.0 + 1e-9):
         size = corner.radius or corner.chamfer
-        raise GeometryError(f"corner {corner.edge.end}: {size:g} mm does not fit between its neighbours")
+        raise GeometryError(f"corner {corner.edge.end}: {size:g} mm does not fit between its neighbors")
     first, second = point + reach * back, point + reach * ahead
     line = Edge((float(first[0]), float(first[1])), corner.edge.face)
     end = (float(second[0]), float(second[1]))
     if corner.chamfer:
         return [line, Edge(end)]
     bisector = (back + ahead) / np.hypot(*(back + ahead))
-    centre = point + corner.radius / math.sin(half_angle) * bisector
+    center = point + corner.radius / math.sin(half_angle) * bisector
     sweep = math.copysign(math.pi - 2.0 * half_angle, turn)
-    return [line, Edge(end, "", (float(centre[0]), float(centre[1])), sweep)]
+    return [line, Edge(end, "", (float(center[0]), float(center[1])), sweep)]
 
 
 def circle(x: float, y: float, radius: float, *, face: str = "") -> Profile:

@@ -1,7 +1,7 @@
 """Removes what booleans leave behind and meshers stumble over: tiny edges and flat triangles.
 
-Booleans of exact coordinates are watertight, but two outlines that nearly meet leave edges of a few micrometres. Such
-an edge is shrunk to one of its ends; a flat triangle exchanges its longest edge with the neighbour on the same face.
+Booleans of exact coordinates are watertight, but two outlines that nearly meet leave edges of a few micrometers. Such
+an edge is shrunk to one of its ends; a flat triangle exchanges its longest edge with the neighbor on the same face.
 Faces keep their numbers, no point moves by more than `SHORTEST_EDGE`, the surface stays closed.
 """
 
@@ -29,7 +29,7 @@ def tidy(points: Vector, triangles: Indices, face: Indices) -> tuple[Vector, Ind
     tearing or folding the surface stay.
     """
     surface = _Surface(points, triangles, face)
-    for _ in range(_PASSES):  # what goes can make its neighbours short or flat
+    for _ in range(_PASSES):  # what goes can make its neighbors short or flat
         shrunk = [surface.shrink(start, end) for start, end in surface.short_edges()]
         flipped = [surface.flip(triangle) for triangle in surface.flat_triangles()]
         if not any(shrunk + flipped):
@@ -102,8 +102,8 @@ class _Surface:
         shared = self._fan[first] & self._fan[second]
         if len(shared) != 2 or math.dist(self._place(first), self._place(second)) >= SHORTEST_EDGE:
             return False
-        neighbours = [{v for triangle in self._fan[end] for v in self._corners(triangle)} for end in (first, second)]
-        if len(neighbours[0] & neighbours[1]) != 4:  # the ends and one point on each side
+        neighbors = [{v for triangle in self._fan[end] for v in self._corners(triangle)} for end in (first, second)]
+        if len(neighbors[0] & neighbors[1]) != 4:  # the ends and one point on each side
             return False
         choices = []
         for gone, kept in ((first, second), (second, first)):
@@ -129,7 +129,7 @@ class _Surface:
         return True
 
     def flip(self, flat: int) -> bool:
-        """Gives a flat triangle and its neighbour over its longest edge the other diagonal, if they share a plane.
+        """Gives a flat triangle and its neighbor over its longest edge the other diagonal, if they share a plane.
 
         The surface moves by less than the height of the flat triangle. Returns: whether it did.
         """

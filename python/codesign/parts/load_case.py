@@ -67,7 +67,7 @@ class StressSettings:
     """How a part's stress is computed; the same for all parts of a study but for supports and load cases.
 
     geometry: "simplified" or "full" (see the part). load, support: variant names that a part may offer.
-    accuracy: "optimisation" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
+    accuracy: "optimization" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
     error and its change are within the tolerance. exclusion, exclusion_distance [m]: where the peak stress is not read,
     as in `fem.StaticSystem`. tolerance: wanted relative error of the peak stress. modes, buckling: how many natural
     frequencies and buckling factors are wanted.
@@ -79,7 +79,7 @@ class StressSettings:
     geometry: Literal["simplified", "full"] = "simplified"
     load: str = "uniform"
     support: str = "published"
-    accuracy: Literal["optimisation", "fine", "converged"] = "optimisation"
+    accuracy: Literal["optimization", "fine", "converged"] = "optimization"
     exclusion: Exclusion = "local"
     exclusion_distance: float | None = None
     tolerance: float = 0.05
@@ -89,7 +89,7 @@ class StressSettings:
     @property
     def segments(self) -> int:
         """Chords on a full circle of the surface that is meshed; fine meshes would find the edges of coarse ones."""
-        return 48 if self.accuracy == "optimisation" else 128
+        return 48 if self.accuracy == "optimization" else 128
 
 
 def part_case(part: Part, settings: StressSettings) -> _core.PartCase:
@@ -255,18 +255,18 @@ def strength_document(result: fem.StaticResult) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class Confirmation:
-    """A part as the optimisation analyses it beside the part as it is made; documents as of `part_document`.
+    """A part as the optimization analyses it beside the part as it is made; documents as of `part_document`.
 
     confirmed: full geometry, fine mesh, refined around the peak; `tolerance_reached` says whether that was enough.
     """
 
-    analysed: dict[str, Any]
+    analyzed: dict[str, Any]
     confirmed: dict[str, Any]
 
     @property
     def deviation(self) -> float:
-        """Of the analysed safety factor from the confirmed one, relative."""
-        return float(self.analysed["safety_factor"] / self.confirmed["safety_factor"] - 1.0)
+        """Of the analyzed safety factor from the confirmed one, relative."""
+        return float(self.analyzed["safety_factor"] / self.confirmed["safety_factor"] - 1.0)
 
 
 def confirm(part: Part, settings: StressSettings) -> Confirmation:
@@ -276,7 +276,7 @@ def confirm(part: Part, settings: StressSettings) -> Confirmation:
     """
     mass = part.mass_properties()
     full = replace(settings, geometry="full", accuracy="converged")
-    analysed, confirmed = (
+    analyzed, confirmed = (
         part_document(mass, _core.analyse_part(part_case(part, chosen))) for chosen in (settings, full)
     )
-    return Confirmation(analysed, confirmed)
+    return Confirmation(analyzed, confirmed)

@@ -76,7 +76,7 @@ class Part(ABC):
         """The part as an expression of the part language, in mm."""
 
     def fem_shape(self, geometry: str = "simplified") -> Shape:
-        """The shape to be analysed: "full", or "simplified" without features that hardly affect stress."""
+        """The shape to be analyzed: "full", or "simplified" without features that hardly affect stress."""
         if geometry not in ("full", "simplified"):
             raise ValueError(f"geometry = {geometry!r}: must be 'full' or 'simplified'")
         return self.shape()
@@ -128,16 +128,16 @@ class Part(ABC):
         return _solid(self, resolution)
 
     def surface(self, segments: int = 48) -> SurfaceMesh:
-        """Closed surface in metres with named faces; `segments`: chords on a full circle (fewer on small ones)."""
+        """Closed surface in meters with named faces; `segments`: chords on a full circle (fewer on small ones)."""
         return surface_mesh(self.solid(Resolution(segments)))
 
     def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> SurfaceMesh:
-        """Closed surface in metres of the shape to be analysed; `geometry` and `variant` as in `fem_shape`."""
+        """Closed surface in meters of the shape to be analyzed; `geometry` and `variant` as in `fem_shape`."""
         resolution = Resolution(segments, FEM_CHORD_MM * (48.0 / segments) ** 2)
         return surface_mesh(_checked(self.fem_shape(geometry, **variant), resolution).tidied())
 
     def mass_properties(self) -> MassProperties:
-        """Mass (to 1e-5), centre of mass and inertia (to 5e-5) of the true curved solid, part frame, SI."""
+        """Mass (to 1e-5), center of mass and inertia (to 5e-5) of the true curved solid, part frame, SI."""
         return mass_properties(_moments(self), self.density)
 
     @property

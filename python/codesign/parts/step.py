@@ -33,7 +33,7 @@ from codesign.geometry.profile import Vector
 from codesign.geometry.shape import reflection
 from codesign.parts.component import Component, distinct_parts
 from codesign.parts.part import MirroredPart, Part
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 SCHEMAS = {"AP214": "AP214IS", "AP242": "AP242DIS"}
 
@@ -109,12 +109,12 @@ class _Document:
         return label
 
     def add_assembly(self, name: str, components: Sequence[tuple[str, TDF_Label, Vector]]) -> None:
-        """A product made of placed products; poses in metres."""
+        """A product made of placed products; poses in meters."""
         assembly = self._shapes.NewShape()
         _set_name(assembly, name)
         for component_name, part, pose in components:
             rows = pose[:3].copy()
-            rows[:, 3] /= MILLIMETRE
+            rows[:, 3] /= MILLIMETER
             motion = gp_Trsf()
             motion.SetValues(*rows.ravel().tolist())
             _set_name(self._shapes.AddComponent(assembly, part, TopLoc_Location(motion)), component_name)

@@ -16,7 +16,7 @@ class Evaluation:
     """All numbers of one design; SI units except `design`, which keeps the study's units.
 
     status: `feasible`; `infeasible` (constraints violated, numbers valid); `failed` (no numbers, `reason` says why).
-    objectives: the family that the study minimises; empty if the flight was lost (infeasible) or the evaluation failed.
+    objectives: the family that the study minimizes; empty if the flight was lost (infeasible) or the evaluation failed.
     violations: how far each constraint is violated, relative to its limit; 0 where it holds. Ranking uses their sum.
     """
 

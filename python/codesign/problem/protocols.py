@@ -1,4 +1,4 @@
-"""What the optimiser needs of a study: any object with these members can be optimised, wherever it comes from."""
+"""What the optimizer needs of a study: any object with these members can be optimized, wherever it comes from."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class ExecutionDefaults(Protocol):
 
 
 class Problem(Protocol):
-    """A study as the optimiser sees it.
+    """A study as the optimizer sees it.
 
     Worker processes load it again: by `codesign.load_study(source)`, or by another `module:function` named in an
     attribute `loader`.
@@ -93,7 +93,7 @@ class Problem(Protocol):
 
     @property
     def objectives(self) -> tuple[str, ...]:
-        """Keys of Evaluation.objectives to minimise."""
+        """Keys of Evaluation.objectives to minimize."""
 
     @property
     def optimizer(self) -> OptimizerDefaults:

@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from codesign.errors import StudyError
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 REDUCTIONS: dict[str, Callable[[Sequence[float]], float]] = {"min": min, "max": max, "sum": math.fsum}
-MINUS = "-"  # before a key: the quantity is maximised, its negative minimised
+MINUS = "-"  # before a key: the quantity is maximized, its negative minimized
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ _TABLE = (
         "Largest displacement of a part",
         "mm",
         "Under its load.",
-        1 / MILLIMETRE,
+        1 / MILLIMETER,
         "max(parts.*.max_displacement)",
     ),
     Quantity(
@@ -107,7 +107,7 @@ _TABLE = (
         "Body clearance",
         "mm",
         "Smallest gap beside the parts; below 0 they overlap.",
-        1 / MILLIMETRE,
+        1 / MILLIMETER,
         "flight.interference.body_clearance",
     ),
     Quantity(
@@ -115,7 +115,7 @@ _TABLE = (
         "Plume clearance",
         "mm",
         "Smallest gap beside the jets; below 0 they hit.",
-        1 / MILLIMETRE,
+        1 / MILLIMETER,
         "flight.interference.plume_clearance",
     ),
     Quantity(
@@ -143,7 +143,7 @@ def words(key: str) -> str:
 def quantity(key: str, family: str = "rms") -> Quantity:
     """What the table says of a key; a path, or an own function's name, is its own label.
 
-    A leading minus gives the quantity to be maximised. family: the objective family, which decides the unit.
+    A leading minus gives the quantity to be maximized. family: the objective family, which decides the unit.
     """
     if key.startswith(MINUS):
         positive = quantity(key[1:], family)

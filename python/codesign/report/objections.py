@@ -8,7 +8,7 @@ from typing import Any
 
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.quantities import words
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 UNSETTLED = ("have a stress that is not settled", "keep the safety factor by less than its error")
 Limits = Mapping[str, tuple[str, float]]  # constraint -> (">=" or "<=", bound in SI units)
@@ -90,4 +90,4 @@ def _nearest(evaluation: Evaluation, kind: str) -> Mapping[str, Any] | None:
 
 
 def _mm(length: float) -> str:
-    return f"{length / MILLIMETRE:.1f}\u202fmm"
+    return f"{length / MILLIMETER:.1f}\u202fmm"

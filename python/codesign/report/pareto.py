@@ -1,4 +1,4 @@
-"""Choices on a front of designs whose objectives are all minimised: compromise point, spread, growth of the front."""
+"""Choices on a front of designs whose objectives are all minimized: compromise point, spread, growth of the front."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def dominates(a: Matrix, b: Matrix) -> bool:
     return bool((a <= b).all() and (a < b).any())
 
 
-def normalised(values: Matrix) -> Matrix:
+def normalized(values: Matrix) -> Matrix:
     """`values` (n, m) with each column mapped to 0 (its best) … 1 (its worst); a constant column becomes 0."""
     low, high = values.min(axis=0), values.max(axis=0)
     span = np.where(high > low, high - low, 1.0)
@@ -31,7 +31,7 @@ def knee_distances(front: Matrix, baseline: Matrix | None = None) -> Matrix:
     Distances are Euclidean after each objective is scaled to its range on the front. Where some rows are nowhere worse
     than `baseline` (m,), the others get infinity: a recommended design should not trade away what the robot has.
     """
-    distance = np.linalg.norm(normalised(front), axis=1)
+    distance = np.linalg.norm(normalized(front), axis=1)
     if baseline is not None:
         better = (front <= baseline).all(axis=1)
         if better.any():
@@ -41,7 +41,7 @@ def knee_distances(front: Matrix, baseline: Matrix | None = None) -> Matrix:
 
 def spread(front: Matrix, count: int) -> list[int]:
     """Up to `count` rows of the front (n, m), far from each other: the extremes first, then farthest-point sampling."""
-    scaled = normalised(front)
+    scaled = normalized(front)
     chosen = list(dict.fromkeys(int(i) for i in np.argmin(scaled, axis=0)))[:count]
     while len(chosen) < min(count, len(front)):
         distance = np.linalg.norm(scaled[:, None] - scaled[chosen][None], axis=2).min(axis=1)

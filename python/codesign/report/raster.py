@@ -15,29 +15,29 @@ Indices = NDArray[np.int64]
 SUPERSAMPLING = 2  # per axis
 LIGHT = np.array([-0.35, 0.75, 0.65])  # camera axes: from the left, above and behind the viewer
 AMBIENT, DIFFUSE = 0.52, 0.5
-CREASE = np.cos(np.radians(35.0))  # neighbouring pixels whose normals differ more are an edge
+CREASE = np.cos(np.radians(35.0))  # neighboring pixels whose normals differ more are an edge
 OUTLINE = 0.45  # brightness of outlines
-CLIFF = 12.0  # pixels: what lies farther behind its neighbour is behind an edge
+CLIFF = 12.0  # pixels: what lies farther behind its neighbor is behind an edge
 ROWS = 300_000  # lines of triangles drawn at once
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
-    """A triangle mesh: points (n, 3) [m], triangles (m, 3); colours (3,) or (n, 3), 0 … 1; unlit bodies glow."""
+    """A triangle mesh: points (n, 3) [m], triangles (m, 3); colors (3,) or (n, 3), 0 … 1; unlit bodies glow."""
 
     points: Array
     triangles: Indices
-    colours: Array
+    colors: Array
     lit: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """An orthographic camera, world z up: where it stands as seen from `centre` [m], and the picture's `height` [m]."""
+    """An orthographic camera, world z up: where it stands as seen from `center` [m], and the picture's `height` [m]."""
 
     azimuth_deg: float
     elevation_deg: float
-    centre: tuple[float, float, float]
+    center: tuple[float, float, float]
     height: float
 
     def axes(self) -> Array:
@@ -68,7 +68,7 @@ def render(bodies: Sequence[Body], view: View, width: int, height: int) -> NDArr
     offsets = np.cumsum([0, *(len(body.points) for body in bodies)])
     triangles = np.concatenate([body.triangles + offset for body, offset in zip(bodies, offsets, strict=False)])
     owner = np.repeat(np.arange(len(bodies)), [len(body.triangles) for body in bodies])
-    seen = (points - np.array(view.centre)) @ view.axes().T * (tall / view.height)
+    seen = (points - np.array(view.center)) @ view.axes().T * (tall / view.height)
     normals = np.cross(seen[triangles[:, 1]] - seen[triangles[:, 0]], seen[triangles[:, 2]] - seen[triangles[:, 0]])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     facing = normals[:, 2] > 1e-6
@@ -78,14 +78,14 @@ def render(bodies: Sequence[Body], view: View, width: int, height: int) -> NDArr
     drawn = np.flatnonzero(triangle >= 0)
     hit = triangle[drawn]
     weights = _barycentric(screen[triangles[hit]], drawn % wide + 0.5, drawn // wide + 0.5)
-    colours = np.concatenate([np.broadcast_to(body.colours, (len(body.points), 3)) for body in bodies])
+    colors = np.concatenate([np.broadcast_to(body.colors, (len(body.points), 3)) for body in bodies])
     lit = np.array([body.lit for body in bodies])[owner[hit]]
     light = AMBIENT + DIFFUSE * np.clip(normals @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, None)
     shade = np.where(lit, light[hit], 1.0)
     edges = _outlines(triangle.reshape(tall, wide), depth.reshape(tall, wide), normals, owner).ravel()[drawn]
     shade[edges & lit] *= OUTLINE
     image = np.zeros((tall * wide, 4))
-    image[drawn, :3] = np.clip(np.einsum("nc,ncd->nd", weights, colours[triangles[hit]]) * shade[:, None], 0.0, 1.0)
+    image[drawn, :3] = np.clip(np.einsum("nc,ncd->nd", weights, colors[triangles[hit]]) * shade[:, None], 0.0, 1.0)
     image[drawn, 3] = 1.0
     small = image.reshape(height, SUPERSAMPLING, width, SUPERSAMPLING, 4).mean(axis=(1, 3))
     small[..., :3] /= np.maximum(small[..., 3:], 1e-9)
@@ -104,7 +104,7 @@ def _visible(corners: Array, wide: int, tall: int) -> tuple[Indices, Array]:
 
 
 def _fragments(corners: Array, wide: int, tall: int) -> Iterator[tuple[Indices, Indices, Array]]:
-    """Pixels whose centres the triangles (t, 3, 3) cover: (triangle, pixel, depth), in batches."""
+    """Pixels whose centers the triangles (t, 3, 3) cover: (triangle, pixel, depth), in batches."""
     slope = _depth_slopes(corners)
     top = np.clip(np.ceil(corners[..., 1].min(axis=1) - 0.5), 0, tall).astype(np.int64)
     bottom = np.clip(np.ceil(corners[..., 1].max(axis=1) - 0.5), 0, tall).astype(np.int64)

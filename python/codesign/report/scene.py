@@ -20,22 +20,22 @@ from codesign.transforms import Matrix
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-PLAIN = (0.72, 0.74, 0.77)  # of shapes without a colour
+PLAIN = (0.72, 0.74, 0.77)  # of shapes without a color
 DOWN = (0.0, 0.0, -1.0)  # along which a thrust pushes unless the study says otherwise
 SEGMENTS = 40  # of a round shape
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
-    """A solid fixed to a link: points (n, 3) [m] in link axes, triangles (m, 3), colour 0 … 1.
+    """A solid fixed to a link: points (n, 3) [m] in link axes, triangles (m, 3), color 0 … 1.
 
-    part: the design's part that it is, None for the robot's own shapes.   values: (n,) what may colour it, say stress.
+    part: the design's part that it is, None for the robot's own shapes.   values: (n,) what may color it, say stress.
     """
 
     link: str
     points: Array
     triangles: Indices
-    colour: tuple[float, float, float] = PLAIN
+    color: tuple[float, float, float] = PLAIN
     part: str | None = None
     values: Array | None = None
 
@@ -104,12 +104,12 @@ def robot_scene(
             piece = _part_piece(part.name, parts[part.name], place, (fields or {}).get(part.name))
             placed.setdefault(place.link, []).append(piece)
     real = _real_shapes(robot, frozenset(placed), config.robot.visuals, packages)
-    colours = _materials(robot)
+    colors = _materials(robot)
     pieces: list[Piece] = []
     for link in robot.link_names:
-        own = _link_pieces(robot, link, colours, packages)
+        own = _link_pieces(robot, link, colors, packages)
         if own and link in real:
-            own = [Piece(link, points, triangles, own[0].colour) for points, triangles in real[link]]
+            own = [Piece(link, points, triangles, own[0].color) for points, triangles in real[link]]
         pieces += placed.get(link) or own
     joints = tuple(joint for group in config.flight.joint_groups for joint in group.joints)
     jets = config.flight.jets
@@ -171,7 +171,7 @@ def with_descendants(robot: RobotDescription, links: Iterable[str]) -> set[str]:
 
 
 def _materials(robot: RobotDescription) -> dict[str, tuple[float, float, float]]:
-    """Colours of the robot's named materials."""
+    """Colors of the robot's named materials."""
     text = io.BytesIO(robot.to_text().encode())
     read = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
     return {m.name: tuple(m.color.rgba[:3]) for m in read.materials if m.color is not None}
@@ -180,7 +180,7 @@ def _materials(robot: RobotDescription) -> dict[str, tuple[float, float, float]]
 def _link_pieces(
     robot: RobotDescription,
     link: str,
-    colours: Mapping[str, tuple[float, float, float]],
+    colors: Mapping[str, tuple[float, float, float]],
     packages: tuple[Path, ...],
 ) -> list[Piece]:
     """The link's own shapes and meshes; meshes that are not here are left out (`link_meshes.absent_meshes`)."""
@@ -189,11 +189,11 @@ def _link_pieces(
         solid = _solid(robot, visual, packages)
         if solid is None:
             continue
-        colour = PLAIN
+        color = PLAIN
         if visual.material is not None:
             own = visual.material.color
-            colour = tuple(own.rgba[:3]) if own is not None else colours.get(visual.material.name, PLAIN)
-        pieces.append(Piece(link, *solid, colour))
+            color = tuple(own.rgba[:3]) if own is not None else colors.get(visual.material.name, PLAIN)
+        pieces.append(Piece(link, *solid, color))
     return pieces
 
 

@@ -1,4 +1,4 @@
-"""The report in words: what was optimised, what was gained, which design to build and why."""
+"""The report in words: what was optimized, what was gained, which design to build and why."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def plural(count: int, one: str, many: str | None = None) -> str:
 
 
 def searched(run: ReportData) -> str:
-    """What was optimised and what came out of it, in numbers of designs."""
+    """What was optimized and what came out of it, in numbers of designs."""
     names = listed([run.label(v).lower() for v in run.variables])
     aims = listed([o.label.lower() for o in run.objectives])
     total = len(run.entries)

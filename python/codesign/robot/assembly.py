@@ -15,7 +15,7 @@ from codesign.errors import StudyError, UrdfError
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial, MassProperties
 from codesign.transforms import Axis, Matrix, mirrored_pose, pose, reflection, require_pose
-from codesign.units import DEGREE, MILLIMETRE
+from codesign.units import DEGREE, MILLIMETER
 
 Vector = tuple[float, float, float]
 
@@ -27,8 +27,8 @@ class Pose(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rpy_deg: Vector = (0.0, 0.0, 0.0)
 
     def matrix(self) -> Matrix:
-        """(4, 4), metres."""
-        return pose([x * MILLIMETRE for x in self.xyz_mm], [angle * DEGREE for angle in self.rpy_deg])
+        """(4, 4), meters."""
+        return pose([x * MILLIMETER for x in self.xyz_mm], [angle * DEGREE for angle in self.rpy_deg])
 
 
 class JointAttachment(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -61,14 +61,14 @@ class PartBody:
 
     properties: mass, com, inertia (3, 3) about the com. interfaces: name -> part_T_interface (4, 4) [m].
     mesh, mirrored_mesh: path of the mesh of the part and of its mirror image as it is to stand in the URDF; None leaves
-    the link's shapes. mesh_scale: file units to metres.
+    the link's shapes. mesh_scale: file units to meters.
     """
 
     properties: MassProperties
     interfaces: Mapping[str, Matrix] = field(default_factory=dict)
     mesh: str | None = None
     mirrored_mesh: str | None = None
-    mesh_scale: float = MILLIMETRE
+    mesh_scale: float = MILLIMETER
 
 
 def assemble(

@@ -23,7 +23,7 @@ from codesign.errors import MeshError, StudyError, UrdfError
 from codesign.robot.assembly import PartPlacement, place_points
 from codesign.robot.description import RobotDescription
 from codesign.transforms import Matrix, inverse
-from codesign.units import DEGREE, MILLIMETRE
+from codesign.units import DEGREE, MILLIMETER
 
 Indices = NDArray[np.intp]
 Pieces = Mapping[str, Sequence[Matrix]]  # link -> points (n, 3) of each convex piece, link axes [m]
@@ -163,7 +163,7 @@ def check_interference(
     _require_links(robot, shapes, settings)
     count = len(next(iter(postures.values()))) if postures else 1
     poses = _posture_poses(robot, postures, count)
-    limit = settings.report_below_mm * MILLIMETRE
+    limit = settings.report_below_mm * MILLIMETER
     contacts = _clearances(shapes, poses, _body_pairs(robot, shapes, settings), limit)
     plume_shapes = shapes | {jet + PLUME: [_plume_hull(settings.plumes)] for jet in settings.plumes.jets}
     plume_poses = poses | {jet + PLUME: poses[jet] for jet in settings.plumes.jets}
@@ -286,23 +286,23 @@ def _relative(poses: Mapping[str, Matrix], a: str, b: str) -> Matrix:
 
 @dataclass(frozen=True, slots=True)
 class _Spheres:
-    """Spheres around solids: centre (k, postures, 3) and radius (k,) [m]; gaps between them bound distances below."""
+    """Spheres around solids: center (k, postures, 3) and radius (k,) [m]; gaps between them bound distances below."""
 
-    centre: Matrix
+    center: Matrix
     radius: Matrix
 
     @staticmethod
     def joined(parts: Sequence[_Spheres]) -> _Spheres:
-        return _Spheres(np.concatenate([p.centre for p in parts]), np.concatenate([p.radius for p in parts]))
+        return _Spheres(np.concatenate([p.center for p in parts]), np.concatenate([p.radius for p in parts]))
 
     def gaps(self, other: _Spheres) -> Matrix:
         """(k, postures) from each sphere to the other one of the same number."""
-        apart = np.linalg.norm(self.centre - other.centre, axis=-1)
+        apart = np.linalg.norm(self.center - other.center, axis=-1)
         return np.asarray(apart - (self.radius + other.radius)[:, None])
 
     def between(self, other: _Spheres) -> Matrix:
         """(k, l, postures) from each sphere to each of the others."""
-        apart = np.linalg.norm(self.centre[:, None] - other.centre[None], axis=-1)
+        apart = np.linalg.norm(self.center[:, None] - other.center[None], axis=-1)
         return np.asarray(apart - (self.radius[:, None] + other.radius)[..., None])
 
 
@@ -346,8 +346,8 @@ def axis_angle(points: Matrix) -> float:
 
 
 def _plume_hull(settings: PlumeSettings) -> Matrix:
-    start, length = settings.start_mm * MILLIMETRE, settings.length_mm * MILLIMETRE
-    radius = settings.radius_mm * MILLIMETRE
+    start, length = settings.start_mm * MILLIMETER, settings.length_mm * MILLIMETER
+    radius = settings.radius_mm * MILLIMETER
     wide = radius + (length - start) * np.tan(settings.half_angle_deg * DEGREE)
     return np.vstack([_ring(radius, start), _ring(wide, length)])
 

@@ -163,7 +163,7 @@ class RobotDescription:
     # ---- editing: each returns a new description
 
     def replace_inertial(self, link: str, inertial: Inertial) -> RobotDescription:
-        """The robot with the whole inertial of a link replaced: mass, centre of mass and full tensor, link axes.
+        """The robot with the whole inertial of a link replaced: mass, center of mass and full tensor, link axes.
 
         Raises: UrdfError naming the link if it does not exist or the inertial is not physical.
         """
@@ -184,7 +184,7 @@ class RobotDescription:
     ) -> RobotDescription:
         """The robot with one mesh as the only visual and collision shape of a link.
 
-        filename: as it is to stand in the URDF (relative path or package://…). scale: file units to metres.
+        filename: as it is to stand in the URDF (relative path or package://…). scale: file units to meters.
         link_T_mesh: (4, 4). material: name of a material of the robot; None keeps the link's first one.
         """
         T = require_pose(link_T_mesh, f"mesh of link {link}")

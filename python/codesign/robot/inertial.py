@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia of a rigid body as one value: replaced, moved and mirrored whole."""
+"""Mass, center of mass and inertia of a rigid body as one value: replaced, moved and mirrored whole."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from codesign.transforms import Axis, Matrix, reflection
 
 
 class MassProperties(Protocol):
-    """What a part tells about its mass: part axes; inertia (3, 3) about the centre of mass."""
+    """What a part tells about its mass: part axes; inertia (3, 3) about the center of mass."""
 
     @property
     def mass(self) -> float: ...  # noqa: D102
@@ -26,7 +26,7 @@ class MassProperties(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Inertial:
-    """mass [kg]; com (3,) [m]; inertia (3, 3) [kg m²] about the centre of mass, in the axes of the same frame."""
+    """mass [kg]; com (3,) [m]; inertia (3, 3) [kg m²] about the center of mass, in the axes of the same frame."""
 
     mass: float
     com: Matrix
@@ -66,7 +66,7 @@ class Inertial:
         """
         values = np.concatenate([[self.mass], self.com, self.inertia.ravel()])
         if not np.isfinite(values).all():
-            raise UrdfError(f"link {name}: mass, centre of mass or inertia is not finite")
+            raise UrdfError(f"link {name}: mass, center of mass or inertia is not finite")
         if not np.allclose(self.inertia, self.inertia.T, rtol=1e-9, atol=0.0):
             raise UrdfError(f"link {name}: inertia tensor is not symmetric")
         check_inertia(name, self.mass, self.inertia)

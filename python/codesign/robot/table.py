@@ -57,7 +57,7 @@ class JointRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class InertiaRow(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Inertia about the centre of mass, link axes, entries of the matrix [kg m²]."""
+    """Inertia about the center of mass, link axes, entries of the matrix [kg m²]."""
 
     xx: float
     yy: float
@@ -157,7 +157,7 @@ def _append_joint(root: ET.Element, joint: JointRow, child: str, table: RobotTab
     ET.SubElement(element, "child", link=child)
     if joint.axis is None:
         return
-    ET.SubElement(element, "axis", xyz=number_text(_normalised(joint)))
+    ET.SubElement(element, "axis", xyz=number_text(_normalized(joint)))
     limit = {"effort": number_text(table.joint_effort), "velocity": number_text(table.joint_velocity)}
     if joint.limits_deg is not None:
         lower, upper = (angle * DEGREE for angle in joint.limits_deg)
@@ -170,7 +170,7 @@ def _append_origin(parent: ET.Element, xyz: Vector, rpy_deg: Vector) -> None:
     ET.SubElement(parent, "origin", xyz=number_text(xyz), rpy=number_text((roll, pitch, yaw)))
 
 
-def _normalised(joint: JointRow) -> Vector:
+def _normalized(joint: JointRow) -> Vector:
     assert joint.axis is not None
     x, y, z = joint.axis
     norm = math.hypot(x, y, z)

@@ -30,7 +30,7 @@ WAIT = 0.5  # s between looks at the clock while nothing finishes
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """When to ask: `first` designs at the start; once these are told, `batch` at a time, at most `window` untold.
+    """When to ask: `first` designs at the start; once these are told, `batch` at a time, at most `window` pending.
 
     Batches are told whole. batch = window = first: generations with a barrier (the default). batch = 1: steady state.
     """
@@ -49,7 +49,7 @@ class Schedule:
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class Termination:
     """When to ask no more: after `evaluations` designs, `wall_time` [s], or `stall_generations` without progress."""
 
     evaluations: int | None = None
@@ -72,7 +72,7 @@ class Plan:
 
     search: Search
     schedule: Schedule
-    stop: Stop
+    stop: Termination
     total: int
 
 
@@ -82,7 +82,7 @@ class _Batch:
     grids: list[Grid]
 
 
-class Loop:
+class SearchDriver:
     """One session of a run."""
 
     def __init__(

@@ -1,4 +1,4 @@
-"""A study's optimisation: start a search, continue it; sweeps and lists of designs by the same means."""
+"""A study's optimization: start a search, continue it; sweeps and lists of designs by the same means."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from codesign.execution.pool import DEFAULT_LOADER, Executor, Limits, LocalPool,
 from codesign.execution.worker import load
 from codesign.problem.identity import Identity
 from codesign.problem.protocols import Problem
-from codesign.search.driver import Loop
+from codesign.search.driver import SearchDriver
 from codesign.search.progress import Progress
 from codesign.search.provenance import check_search, search_identity
 from codesign.search.registry import find_search
@@ -224,8 +224,8 @@ def _drive(study: Problem, settings: Settings, store: RunStore, cache: Path | st
         designs.register(study.identity.program)
     plan = settings.plan(study.space, study.objectives)
     try:
-        loop = Loop(study, plan, store, designs, resources.get("progress"))
-        loop.run(lambda: make_executor(study, resources, cache, plan.total))
+        driver = SearchDriver(study, plan, store, designs, resources.get("progress"))
+        driver.run(lambda: make_executor(study, resources, cache, plan.total))
     finally:
         if designs is not None:
             designs.close()

@@ -19,7 +19,7 @@ from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
 from codesign.search.base import Grid
 from codesign.search.registry import SearchKind
-from codesign.search.sampling import Unseen, start_points
+from codesign.search.sampling import UnseenPoints, start_points
 
 if TYPE_CHECKING:
     from codesign.search.settings import Settings
@@ -58,7 +58,7 @@ class Evolution:
         self._objectives = tuple(objectives)
         self._taken: set[Grid] = set()
         self._size = math.prod(space.levels)
-        self._filler = Unseen(space.levels, np.random.default_rng([settings.seed, 1]), self._taken)
+        self._filler = UnseenPoints(space.levels, np.random.default_rng([settings.seed, 1]), self._taken)
         self._started = False
         self._start = _start_population(space, settings)
         top = np.asarray(space.levels, dtype=float) - 1.0
@@ -170,7 +170,7 @@ def _nsga3(settings: Settings, n_objectives: int, common: dict[str, Any]) -> Any
 def _smsemoa(_settings: Settings, _n_objectives: int, common: dict[str, Any]) -> Any:
     from pymoo.algorithms.moo import sms
 
-    return sms.SMSEMOA(**common, normalize=False)  # else it normalises with infeasible designs' objectives
+    return sms.SMSEMOA(**common, normalize=False)  # else it normalizes with infeasible designs' objectives
 
 
 def _agemoea(settings: Settings, _n_objectives: int, common: dict[str, Any]) -> Any:

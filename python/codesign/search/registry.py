@@ -37,7 +37,7 @@ class NoOptions:
 class SearchKind:
     """What a search is to the driver.
 
-    make: builds it for a design space and the keys of the minimised numbers. learns: what it asks for depends on what
+    make: builds it for a design space and the keys of the minimized numbers. learns: what it asks for depends on what
     it was told, so it is asked a generation at a time. options: a dataclass of its own settings, all with defaults.
     """
 

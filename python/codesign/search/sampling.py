@@ -18,7 +18,7 @@ from codesign.search.registry import SearchKind
 STARTS = ("sobol", "sobol-plain", "random")
 
 
-class Listed:
+class FixedDesigns:
     """A fixed sequence of grid points, each once: an exhaustive sweep, a sample for a sensitivity analysis."""
 
     def __init__(self, grids: Iterator[Grid] | Sequence[Grid]) -> None:
@@ -36,7 +36,7 @@ class Listed:
         return []
 
 
-class Unseen:
+class UnseenPoints:
     """Uniformly random grid points without repetition.
 
     `taken` is shared with the caller: points in it are never given, points given are added.
@@ -66,10 +66,10 @@ class Unseen:
 
 
 class RandomSearch:
-    """Random designs without repetition: what any optimiser has to beat."""
+    """Random designs without repetition: what any optimizer has to beat."""
 
     def __init__(self, space: DesignSpace, seed: int) -> None:
-        self._unseen = Unseen(space.levels, np.random.default_rng(seed), set())
+        self._unseen = UnseenPoints(space.levels, np.random.default_rng(seed), set())
 
     def ask(self, count: int) -> list[Grid]:
         """Random points."""
@@ -84,7 +84,7 @@ class RandomSearch:
 
 
 RANDOM = SearchKind(lambda space, _objectives, settings, _options: RandomSearch(space, settings.seed), learns=False)
-LISTED = SearchKind(lambda _space, _objectives, settings, _options: Listed(settings.listed), learns=False)
+LISTED = SearchKind(lambda _space, _objectives, settings, _options: FixedDesigns(settings.listed), learns=False)
 
 
 def grid_points(unit: npt.NDArray[np.float64], levels: Sequence[int]) -> list[Grid]:
@@ -98,7 +98,7 @@ def start_points(space: DesignSpace, count: int, start: str, seed: int) -> list[
     """The `count` different grid points that a search starts from (all of the grid if it is smaller).
 
     `sobol`: Sobol' points scrambled by the seed (Owen). `sobol-plain`: unscrambled, the same for every seed, without
-    the centre point, as in the paper's start population. `random`: independent uniform points. Points that fall on one
+    the center point, as in the paper's start population. `random`: independent uniform points. Points that fall on one
     grid value are taken once, and the sequence goes on.
     """
     if start not in STARTS:
@@ -119,7 +119,7 @@ def start_points(space: DesignSpace, count: int, start: str, seed: int) -> list[
             found |= dict.fromkeys(grid_points(unit, levels))
             blocks += 1
     points = list(found)[:count]
-    return points + Unseen(levels, rng, set(points)).draw(count - len(points))
+    return points + UnseenPoints(levels, rng, set(points)).draw(count - len(points))
 
 
 def sub_grid(space: DesignSpace, counts: Sequence[int]) -> list[Grid]:

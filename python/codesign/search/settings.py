@@ -10,10 +10,10 @@ from typing import Any
 
 from codesign.problem.design_space import DesignSpace
 from codesign.search.base import Grid, Search
-from codesign.search.driver import Plan, Schedule, Stop
+from codesign.search.driver import Plan, Schedule, Termination
 from codesign.search.registry import find_search
 
-UNTOLD = 4096  # designs that a search which learns nothing asks for ahead
+PENDING = 4096  # designs that a search which learns nothing asks for ahead
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,11 +79,11 @@ class Settings:
         """The search with when to ask and when to end. Raises: ValueError if the settings make no sense."""
         size = self.population
         if not find_search(self.algorithm).learns:
-            schedule = Schedule(size, size, max(UNTOLD, size))
+            schedule = Schedule(size, size, max(PENDING, size))
         elif self.steady:
             schedule = Schedule(size, 1, self.lag or size)
         else:
             schedule = Schedule(size)
-        stop = Stop(self.evaluations, self.wall_time, self.stall_generations, self.stall_tolerance)
+        stop = Termination(self.evaluations, self.wall_time, self.stall_generations, self.stall_tolerance)
         total = min(self.evaluations or len(self.listed), math.prod(space.levels))
         return Plan(self.search(space, objectives), schedule, stop, total)

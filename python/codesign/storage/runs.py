@@ -129,7 +129,7 @@ def compare_runs(runs: Sequence[Run]) -> list[dict[str, Any]]:
     Raises: StoreError if their objectives differ.
     """
     if len({run.objectives for run in runs}) > 1:
-        raise StoreError("these runs minimise different objectives: they cannot be compared")
+        raise StoreError("these runs minimize different objectives: they cannot be compared")
     fronts = [objective_rows((record.evaluation for record in run.front), run.objectives) for run in runs]
     everything = [objective_rows(run.evaluations, run.objectives) for run in runs]
     together = [values for values in everything if len(values)]

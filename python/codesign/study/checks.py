@@ -117,8 +117,8 @@ def _number_problems(config: StudyConfig) -> Iterator[Problem]:
     if twice := repeated(names):
         yield "objectives", f"{twice!r} is named twice"
     for key, listed in (
-        ("objectives.minimise", config.objectives.minimise),
-        ("objectives.maximise", config.objectives.maximise),
+        ("objectives.minimize", config.objectives.minimize),
+        ("objectives.maximize", config.objectives.maximize),
         ("constraints.limits", tuple(config.constraints.limits)),
     ):
         for name in listed:

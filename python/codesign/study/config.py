@@ -131,14 +131,14 @@ class FemConfig(Section, frozen=True, kw_only=True):
     geometry: Literal["simplified", "full"] = "simplified"
     load: str = "uniform"
     support: str = "published"
-    accuracy: Literal["optimisation", "fine", "converged"] = "optimisation"
+    accuracy: Literal["optimization", "fine", "converged"] = "optimization"
     exclusion: Literal["local", "published"] = "local"
     exclusion_distance_mm: NonNegative | None = None
     tolerance: Positive = 0.05
 
 
 class ObjectivesConfig(Section, frozen=True, kw_only=True):
-    """What is minimised and what is maximised: one to six numbers of an evaluation.
+    """What is minimized and what is maximized: one to six numbers of an evaluation.
 
     family: how momentum, joint_velocity and thrust are computed. Besides them any name of
     `codesign.problem.quantities`, any path of the evaluation's document (`parts.strut.mass`, `flight.max_torque`,
@@ -146,18 +146,18 @@ class ObjectivesConfig(Section, frozen=True, kw_only=True):
     """
 
     family: Literal["rms", "script", "paper"] = "rms"
-    minimise: tuple[str, ...] = ("momentum", "joint_velocity", "thrust")
-    maximise: tuple[str, ...] = ()
+    minimize: tuple[str, ...] = ("momentum", "joint_velocity", "thrust")
+    maximize: tuple[str, ...] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Of the minimised numbers; what is maximised has a minus before its name."""
-        return self.minimise + tuple(f"-{name}" for name in self.maximise)
+        """Of the minimized numbers; what is maximized has a minus before its name."""
+        return self.minimize + tuple(f"-{name}" for name in self.maximize)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Of the numbers, without signs."""
-        return self.minimise + self.maximise
+        return self.minimize + self.maximize
 
 
 class LimitConfig(Section, frozen=True, kw_only=True):

@@ -64,7 +64,7 @@ class StudyData:
 
     @property
     def objectives(self) -> tuple[str, ...]:
-        """Keys of the minimised numbers; a maximised one has a minus before its name."""
+        """Keys of the minimized numbers; a maximized one has a minus before its name."""
         return self.config.objectives.keys
 
     @property

@@ -18,7 +18,7 @@ from codesign.transforms import Matrix
 
 ARROW_LENGTH = 0.33  # of the thrust arrows at the largest thrust, of the robot's size
 LINE = 0.0065  # radius of arrows and paths, of the robot's size
-SRGB_EXPONENT = 2.2  # of screen colours, roughly
+SRGB_EXPONENT = 2.2  # of screen colors, roughly
 PART = (0, 114, 178)
 ARROW = (230, 122, 20)
 PATH = (90, 98, 110)
@@ -52,7 +52,7 @@ class Actor:
         self.pose(0.0)
 
     @property
-    def newtons_per_metre(self) -> float:
+    def newtons_per_meter(self) -> float:
         """Scale of the thrust arrows [N/m]."""
         return round_number(self.scene.max_thrust / (ARROW_LENGTH * self.scene.size))
 
@@ -100,19 +100,19 @@ class Actor:
             poses = self.scene.poses(None, np.eye(4)[None])
         else:
             poses = self.scene.poses(flight["joint_positions"], base_pose(flight, slice(None)))
-            tips = self.scene.pushes * flight["thrust"][..., None] / self.newtons_per_metre
+            tips = self.scene.pushes * flight["thrust"][..., None] / self.newtons_per_meter
             self._shafts = np.stack([np.zeros_like(tips), tips], axis=2).astype(np.float32)
         self._motion = {link: _placed(poses[link]) for link in [*self.scene.links, *self.scene.jets]}
 
     def _add_piece(self, name: str, piece: Piece) -> None:
-        """A solid in its colour; a part with stresses a second time, in theirs."""
+        """A solid in its color; a part with stresses a second time, in theirs."""
         points, triangles = piece.points.astype(np.float32), piece.triangles.astype(np.uint32)
-        colour = PART if piece.part else tuple(int(255 * c) for c in piece.colour)
-        plain = self._server.scene.add_mesh_simple(name, points, triangles, color=colour, flat_shading=True)
+        color = PART if piece.part else tuple(int(255 * c) for c in piece.color)
+        plain = self._server.scene.add_mesh_simple(name, points, triangles, color=color, flat_shading=True)
         if piece.part is not None and piece.values is not None:
             highest = self._detail.parts[piece.part].peak  # what the safety factor is made from
-            coloured = tinted_mesh(piece.points, triangles, stress_tint(piece.values, highest))
-            self._parts.append((plain, self._server.scene.add_mesh_trimesh(f"{name}_stress", coloured)))
+            colored = tinted_mesh(piece.points, triangles, stress_tint(piece.values, highest))
+            self._parts.append((plain, self._server.scene.add_mesh_trimesh(f"{name}_stress", colored)))
 
     def _add_arrow(self, jet: str) -> Any:
         """The thrust of a jet; it hangs from the jet's frame, so that it moves with it also between two samples."""
@@ -122,19 +122,19 @@ class Actor:
             head_length=5.0 * line,
         )  # fmt: skip
 
-    def _add_path(self, name: str, points: Array, colour: tuple[int, int, int]) -> None:
+    def _add_path(self, name: str, points: Array, color: tuple[int, int, int]) -> None:
         segments = (np.stack([points[:-1], points[1:]], axis=1) + self._offset).astype(np.float32)
         line = self._server.scene.add_line_segments(
-            f"{self._root}/path/{name}", segments, colour, thickness=LINE * self.scene.size
+            f"{self._root}/path/{name}", segments, color, thickness=LINE * self.scene.size
         )
         self._paths.append(line)
 
 
-def tinted_mesh(points: Array, triangles: NDArray[Any], colours: NDArray[Any]) -> trimesh.Trimesh:
-    """A mesh with a colour (n, 3), 0 … 1, at each point; its material is no metal, which is black without a sky."""
+def tinted_mesh(points: Array, triangles: NDArray[Any], colors: NDArray[Any]) -> trimesh.Trimesh:
+    """A mesh with a color (n, 3), 0 … 1, at each point; its material is no metal, which is black without a sky."""
     material = PBRMaterial(metallicFactor=0.0, roughnessFactor=0.9)  # type: ignore[no-untyped-call]
     visual = TextureVisuals(material=material)  # type: ignore[no-untyped-call]
-    linear = np.column_stack([colours**SRGB_EXPONENT, np.ones(len(colours))])  # as glTF has it
+    linear = np.column_stack([colors**SRGB_EXPONENT, np.ones(len(colors))])  # as glTF has it
     visual.vertex_attributes["color"] = np.rint(255 * linear).astype(np.uint8)
     return trimesh.Trimesh(points, triangles, visual=visual, process=False)
 

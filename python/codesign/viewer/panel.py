@@ -1,4 +1,4 @@
-"""What the viewer says beside its scene: the design in numbers with units, the scale of the colours, joint angles."""
+"""What the viewer says beside its scene: the design in numbers with units, the scale of the colors, joint angles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from codesign.report.figures.style import STRESS, STRESS_STOPS
 from codesign.report.objections import objections
 from codesign.report.study_words import objective_quantities
 from codesign.report.words import number, percent
-from codesign.units import DEGREE, MEGA, MILLIMETRE
+from codesign.units import DEGREE, MEGA, MILLIMETER
 
 CLOSEST = 3  # pairs of bodies that are named
 
@@ -44,14 +44,14 @@ def _clearances(evaluation: Evaluation) -> list[str]:
     pairs += [(f"plume of {pair['jet']} – {pair['link']}", pair) for pair in measured.get("plumes", [])]
     nearest = sorted(pairs, key=lambda named: named[1]["clearance"])[:CLOSEST]
     return [
-        f"{name.replace('_', ' ')}: **{pair['clearance'] / MILLIMETRE:.1f} mm** at {pair['time']:.1f} s"
+        f"{name.replace('_', ' ')}: **{pair['clearance'] / MILLIMETER:.1f} mm** at {pair['time']:.1f} s"
         for name, pair in nearest
     ]
 
 
 def legend(detail: Detail) -> str:
-    """The colours of stress as HTML: a scale for each part, which ends at the peak that decides its safety factor."""
-    stops = ", ".join(f"{colour} {100 * at:g}%" for at, colour in zip(STRESS_STOPS, STRESS, strict=True))
+    """The colors of stress as HTML: a scale for each part, which ends at the peak that decides its safety factor."""
+    stops = ", ".join(f"{color} {100 * at:g}%" for at, color in zip(STRESS_STOPS, STRESS, strict=True))
     bar = f'<div style="height:8px;border-radius:4px;background:linear-gradient(90deg,{stops})"></div>'
     scales = "".join(
         f'<div style="display:flex;justify-content:space-between"><span>0</span><span>{words(name)}</span>'

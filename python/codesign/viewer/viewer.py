@@ -1,4 +1,4 @@
-"""A robot in the browser: a design's parts coloured by stress, its flight played back with thrusts.
+"""A robot in the browser: a design's parts colored by stress, its flight played back with thrusts.
 
 `view` starts a local web server (viser) and returns a Viewer; `record` writes one flight as a single HTML file that
 plays without a server. Nothing is loaded from other hosts.
@@ -157,7 +157,7 @@ class Viewer:
                 self._server.scene.remove_by_name("/world/robot")
                 self._actor = Actor(self._server, "/world/robot", scene, self._shown, np.zeros(3))
                 self._lay_ground()
-            self._thrusts.label = f"Thrusts (1 m is {self._actor.newtons_per_metre:g} N)"
+            self._thrusts.label = f"Thrusts (1 m is {self._actor.newtons_per_meter:g} N)"
             self._legend.content = legend(self._shown)
             self._show_beside()
             self._show_layers()

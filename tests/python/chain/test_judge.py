@@ -10,7 +10,7 @@ from codesign.problem.quantities import QUANTITIES, quantity, read
 from codesign.study import new_study
 from codesign.study.config import LimitConfig
 
-MINIMISED = 'minimise = ["momentum", "joint_velocity", "thrust"]'
+MINIMIZED = 'minimize = ["momentum", "joint_velocity", "thrust"]'
 PARTS = {
     "rod": {"mass": 0.4, "safety_factor": 12.0, "buckling_factor": None, "frequencies": [80.0, 91.0]},
     "plate": {"mass": 0.6, "safety_factor": 30.0, "buckling_factor": 55.0, "frequencies": [120.0, 140.0]},
@@ -28,8 +28,8 @@ def config():
     return load_study("gimbal_quad").config
 
 
-def asked(config, minimise=("momentum",), maximise=(), **bounds):
-    objectives = msgspec.structs.replace(config.objectives, minimise=minimise, maximise=maximise)
+def asked(config, minimize=("momentum",), maximize=(), **bounds):
+    objectives = msgspec.structs.replace(config.objectives, minimize=minimize, maximize=maximize)
     constraints = msgspec.structs.replace(config.constraints, limits=bounds.get("limits", {}))
     return msgspec.structs.replace(config, objectives=objectives, constraints=constraints, interference=None)
 
@@ -86,8 +86,8 @@ def test_own_functions_of_an_evaluation(tmp_path):
     )
     file = tmp_path / "study" / "study.toml"
     text = file.read_text()
-    assert MINIMISED in text
-    file.write_text(text.replace(MINIMISED, 'minimise = ["momentum", "costs:price"]'))
+    assert MINIMIZED in text
+    file.write_text(text.replace(MINIMIZED, 'minimize = ["momentum", "costs:price"]'))
     study = load_study(file)
     assert study.objectives == ("momentum", "costs:price")
     assert judge(study.config, DOCUMENT, study.functions).objectives == {"momentum": 1.5, "costs:price": 40.0}
@@ -97,17 +97,17 @@ def test_own_functions_of_an_evaluation(tmp_path):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ('minimise = ["momentun"]', "did you mean 'momentum'"),
-        ('minimise = ["parts.strutt.mass"]', "no part 'strutt'; did you mean 'strut'"),
-        ('minimise = ["mass", "mass"]', "named twice"),
-        ("minimise = []", "one to 6"),
-        ('minimise = ["costs:price"]', "No module named 'costs'"),
+        ('minimize = ["momentun"]', "did you mean 'momentum'"),
+        ('minimize = ["parts.strutt.mass"]', "no part 'strutt'; did you mean 'strut'"),
+        ('minimize = ["mass", "mass"]', "named twice"),
+        ("minimize = []", "one to 6"),
+        ('minimize = ["costs:price"]', "No module named 'costs'"),
     ],
 )
 def test_wrong_names_are_refused_before_anything_runs(tmp_path, line, message):
     new_study(tmp_path / "study")
     file = tmp_path / "study" / "study.toml"
-    file.write_text(file.read_text().replace(MINIMISED, line))
+    file.write_text(file.read_text().replace(MINIMIZED, line))
     with pytest.raises(StudyError, match=message):
         load_study(file)
 

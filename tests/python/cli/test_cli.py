@@ -37,7 +37,7 @@ def test_help_has_an_example(command):
         (("resume", "absent"), "absent"),
         (("validate", "absent"), "absent"),
         (("view",), "either the folder of a run or a design"),
-        (("optimize", "--colour", "red"), "--colour"),
+        (("optimize", "--color", "red"), "--color"),
     ],
 )
 def test_bad_input_is_exit_code_2_and_says_why(arguments, message, tmp_path):

@@ -21,7 +21,7 @@ PULL = "normal:1,0,0: 1000 0 0"
 
 @pytest.fixture
 def bar(tmp_path):
-    """A bar of 100 x 10 x 10 mm as an ASCII STL in millimetres."""
+    """A bar of 100 x 10 x 10 mm as an ASCII STL in millimeters."""
     lines = ["solid bar"]
     for a, b, c, d in QUADS:
         for triangle in ((a, b, c), (a, c, d)):
@@ -53,7 +53,7 @@ def test_the_edge_length_follows_the_wall(bar):
     assert document["tetrahedra"] < 60_000
 
 
-def test_a_part_of_micrometres(bar):
+def test_a_part_of_micrometers(bar):
     document = stress_document(bar, 1e-6, named_material("ergal"), ["normal:-1,0,0"], ["normal:1,0,0: 1e-3 0 0"], 5e-3)
     assert document["exclusion"]["largest"] < 11e-6
     assert document["safety_factor"] == pytest.approx(462 / 10, rel=0.4)  # nearer to the clamp

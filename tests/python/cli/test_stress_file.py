@@ -85,14 +85,14 @@ def test_step_files_are_read_in_their_own_units(tmp_path):
 
 
 def test_units_that_look_wrong_are_mentioned(tmp_path):
-    path = stl(tmp_path / "part.stl", box((0, 0, 0), (0.2, 0.03, 0.02)))  # metres
+    path = stl(tmp_path / "part.stl", box((0, 0, 0), (0.2, 0.03, 0.02)))  # meters
     doubts = stress_document(path, 1e-3, named_material("steel_s235"), *CLAMPED)["warnings"]
-    assert any("only 0.2 x 0.03 x 0.02 mm: is the file in metres (--scale 1)?" in doubt for doubt in doubts)
+    assert any("only 0.2 x 0.03 x 0.02 mm: is the file in meters (--scale 1)?" in doubt for doubt in doubts)
     assert any(" times the part, small ones are assumed" in doubt for doubt in doubts)
     right = stress_document(path, 1.0, named_material("steel_s235"), *CLAMPED)
     bent = 100 * 0.2**3 / (3 * 210e9 * 0.03 * 0.02**3 / 12)  # F L³ / (3 E I)
     assert right["max_displacement"] == pytest.approx(bent, rel=0.02)
     assert not any("--scale" in doubt for doubt in right["warnings"])
-    surface, _ = load_file(stl(path, BAR), 1.0, repair=False)  # millimetres taken for metres
+    surface, _ = load_file(stl(path, BAR), 1.0, repair=False)  # millimeters taken for meters
     assert "smaller units (--scale 0.001)" in unit_hints(surface, 1.0, 0.0)[0]
     assert np.allclose(np.ptp(surface.points, axis=0), (40, 10, 10))

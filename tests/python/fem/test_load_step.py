@@ -65,7 +65,7 @@ def test_from_a_step_file_to_a_safety_factor(file):
     assert np.asarray(result.reactions).sum(axis=0) == pytest.approx([0.0, 0.0, 500.0], abs=1e-6)
 
 
-def test_inches_become_metres(tmp_path):
+def test_inches_become_meters(tmp_path):
     shape = build_brep(Plate().shape()).shape
     before = Interface_Static.CVal_s("write.step.unit")
     Interface_Static.SetCVal_s("write.step.unit", "INCH")

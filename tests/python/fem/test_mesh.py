@@ -171,9 +171,9 @@ def test_size_field_makes_elements_small_near_its_source():
     assert field(np.array([[0.5, 0, 1.0], [0.5, 0.3, 1.0], [0.5, 1, 0]])) == pytest.approx([0.05, 0.15, 0.3])
     mesh = fem.tetrahedralize(box(), field)
     corners = mesh.nodes[mesh.tets[:, :4]]
-    centre = corners.mean(axis=1)
-    near = np.hypot(centre[:, 1], centre[:, 2] - 1) < 0.1
-    far = np.hypot(centre[:, 1], centre[:, 2] - 1) > 0.9
+    center = corners.mean(axis=1)
+    near = np.hypot(center[:, 1], center[:, 2] - 1) < 0.1
+    far = np.hypot(center[:, 1], center[:, 2] - 1) > 0.9
     edge = np.linalg.norm(corners[:, 0] - corners[:, 1], axis=1)
     assert 0.04 < edge[near].mean() < 0.075
     assert edge[far].mean() > 0.15

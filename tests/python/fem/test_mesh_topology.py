@@ -19,7 +19,7 @@ def box(lower, upper):
 
 
 def surface_of(solid):
-    """In metres."""
+    """In meters."""
     mesh = solid.to_mesh()
     points = np.asarray(mesh.vert_properties)[:, :3].astype(float) * 1e-3
     return fem.SurfaceMesh(points, np.asarray(mesh.tri_verts).astype(np.int32))

@@ -18,7 +18,7 @@ def read(tmp_path):
 
 
 def t_junction():
-    """A block of 40 x 20 x 10 mm; one facet of its front is cut in two where its neighbour is not."""
+    """A block of 40 x 20 x 10 mm; one facet of its front is cut in two where its neighbor is not."""
     facets = box((0, 0, 0), (40, 20, 10))
     cut = next(i for i, f in enumerate(facets) if {tuple(p) for p in f} >= {(0, 0, 10), (40, 0, 10)})
     k = next(k for k in range(3) if {tuple(facets[cut][k]), tuple(facets[cut][k - 2])} == {(0, 0, 10), (40, 0, 10)})

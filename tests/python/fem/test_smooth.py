@@ -26,9 +26,9 @@ def extruded(outlines, height, names=None):
     return fem.SurfaceMesh(points, triangles, np.where(low, 0, np.where(high, 1, 2)).tolist(), names)
 
 
-def circle(radius, segments, centre=(0.0, 0.0), hole=False):
+def circle(radius, segments, center=(0.0, 0.0), hole=False):
     angle = 2 * np.pi * np.arange(segments) / segments * (-1 if hole else 1)
-    return np.asarray(centre) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    return np.asarray(center) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def volume(surface):

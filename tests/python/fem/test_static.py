@@ -76,7 +76,7 @@ def test_meshes_of_four_and_ten_node_tetrahedra_are_the_same_model():
     assert of_four.peak_stress == pytest.approx(of_ten.peak_stress, rel=1e-8)
 
 
-def test_one_factorisation_serves_several_load_cases():
+def test_one_factorization_serves_several_load_cases():
     mesh = bar()
     system = fem.StaticSystem(mesh, STEEL, [fem.Support(ROOT)])
     down, side = fem.Force(TIP, [0, 0, -100.0]), fem.Force(TIP, [0, 30.0, 0])

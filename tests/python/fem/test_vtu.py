@@ -1,4 +1,4 @@
-"""VTU files: what was analysed, where the peak is read, units, tensors; a half model made whole."""
+"""VTU files: what was analyzed, where the peak is read, units, tensors; a half model made whole."""
 
 from pathlib import Path
 from typing import Literal

@@ -1,4 +1,4 @@
-"""Studies made from a study. Robust: mean and worst over tasks, violations of the worst, parts analysed once."""
+"""Studies made from a study. Robust: mean and worst over tasks, violations of the worst, parts analyzed once."""
 
 import json
 
@@ -60,7 +60,7 @@ def test_one_failure_fails_the_design() -> None:
     assert (result.status, result.reason) == ("failed", "walk: SolverError: singular")
 
 
-def test_optimises_like_any_study_and_loads_again_in_workers(tmp_path) -> None:
+def test_optimizes_like_any_study_and_loads_again_in_workers(tmp_path) -> None:
     fake = study(by_trajectory=True)
     both = robust(fake, ["hover", "walk"], seeds=(1, 2), statistic="both")
     assert both.trajectories == ("hover@1", "hover@2", "walk@1", "walk@2")
@@ -75,7 +75,7 @@ def test_optimises_like_any_study_and_loads_again_in_workers(tmp_path) -> None:
             assert result.objectives["near_mean"] == pytest.approx(sum(singles) / 4, rel=1e-12)
 
 
-def test_parts_are_analysed_once_for_all_tasks() -> None:
+def test_parts_are_analyzed_once_for_all_tasks() -> None:
     class Counting(FakeStudy):
         analyses = 0
 

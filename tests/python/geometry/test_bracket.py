@@ -42,7 +42,7 @@ def test_seat_is_the_pocket_floor() -> None:
 @pytest.mark.parametrize("support", ["published", "bolted"])
 @pytest.mark.parametrize("geometry", ["full", "simplified"])
 @pytest.mark.parametrize("angle", [1, 45, 79])
-def test_analysed_shapes_have_their_faces(geometry: str, support: str, angle: float) -> None:
+def test_analyzed_shapes_have_their_faces(geometry: str, support: str, angle: float) -> None:
     surface = JetpackBracket(angle, 60).fem_surface(geometry, segments=192, support=support)
     assert {"seat", "symmetry"} <= set(surface.face_names)
     assert ("mount" in surface.face_names) == (support == "published")

@@ -51,7 +51,7 @@ def test_heads_of_the_flange_screws_find_a_flat_seat() -> None:
 
 
 @pytest.mark.parametrize("geometry", ["full", "simplified"])
-def test_analysed_shapes_have_their_faces(geometry: str) -> None:
+def test_analyzed_shapes_have_their_faces(geometry: str) -> None:
     surface = ForearmJetSupport(80, 108).fem_surface(geometry)
     assert set(surface.face_names) == {"", "mount", "seat"}
     x = surface.points[:, 0] * 1e3

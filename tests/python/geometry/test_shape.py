@@ -142,10 +142,10 @@ def test_what_is_not_one_solid_is_refused(make: Callable[[], Shape], reason: str
         (lambda: polygon((0, 0), (0, 1), (1, 1)), "must be positive"),
         (lambda: polygon((0, 0), (4, 0), (0, 3), (1, -1), (4, 4), (0, 4)), "crosses itself"),
         (
-            lambda: Path(0, 0).line(6, 0).line(6, 3).line(4, 3).arc(2, 1, centre=(2, 3)).line(0, 1).close(),
+            lambda: Path(0, 0).line(6, 0).line(6, 3).line(4, 3).arc(2, 1, center=(2, 3)).line(0, 1).close(),
             "doubles back",
         ),
-        (lambda: Path(0, 0).arc(2, 0, centre=(0.5, 0)), "radii"),
+        (lambda: Path(0, 0).arc(2, 0, center=(0.5, 0)), "radii"),
         (lambda: Path(0, 0).line(1, 0).line(1, 1, radius=3).line(0, 1).close(), "does not fit"),
         (lambda: cylinder(1, 2, 2), "end must lie above"),
         (lambda: Revolution(polygon((0, -1), (1, -1), (1, 1))), "cross its axis"),
@@ -161,7 +161,7 @@ def test_impossible_shapes_are_refused(draw: Callable[[], Profile | Shape], reas
     [
         lambda: box((0, 0, 0), (1, 1, 1), top="a"),
         lambda: Frame(x=(1, 0, 0), y=(1, 0, 0)),
-        lambda: Path(0, 0).arc(2, 0, centre=(1, 0), turn="up"),
+        lambda: Path(0, 0).arc(2, 0, center=(1, 0), turn="up"),
         lambda: box((0, 0, 0), (1, 1, 1)).mirrored("w"),
     ],
 )

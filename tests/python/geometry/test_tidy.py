@@ -11,7 +11,7 @@ from codesign.parts.part import EXPORT_RESOLUTION, Part
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
-# Designs whose raw booleans have edges of 12 to 32 micrometres or, divided more finely, triangles 0.1 micrometres high.
+# Designs whose raw booleans have edges of 12 to 32 micrometers or, divided more finely, triangles 0.1 micrometers high.
 AWKWARD = [
     (JetpackBracket(37, 78), Resolution(48)),
     (JetpackBracket(62, 60), Resolution(48)),

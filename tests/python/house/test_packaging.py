@@ -21,7 +21,7 @@ def run(*command: str, cwd: Path, **environment: str) -> str:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Install prefix of `colcon build`, hardly optimised: what is tested is where things go."""
+    """Install prefix of `colcon build`, hardly optimized: what is tested is where things go."""
     if shutil.which("colcon", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}") is None:
         pytest.fail("colcon is missing: install the extra 'test'")
     base = tmp_path_factory.mktemp("colcon")

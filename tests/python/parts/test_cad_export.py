@@ -51,7 +51,7 @@ def test_all_files_are_there(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("part", [BRACKET, FOREARM], ids=lambda part: part.name)
-def test_stl_is_a_closed_solid_in_millimetres(part: JetpackBracket | ForearmJetSupport, folder: Path) -> None:
+def test_stl_is_a_closed_solid_in_millimeters(part: JetpackBracket | ForearmJetSupport, folder: Path) -> None:
     mesh = trimesh.load(folder / f"{part.name}.stl")
     assert mesh.is_watertight
     assert mesh.body_count == 1
@@ -62,7 +62,7 @@ def test_stl_is_a_closed_solid_in_millimetres(part: JetpackBracket | ForearmJetS
     assert header.startswith(b"codesign " + part.title.encode())
 
 
-def test_glb_places_all_components_in_metres_with_y_up(folder: Path) -> None:
+def test_glb_places_all_components_in_meters_with_y_up(folder: Path) -> None:
     scene = trimesh.load(folder / "assembly.glb")
     assert set(scene.geometry) == {"jetpack_bracket", "forearm_support", "r_forearm_support"}
     y_up_R_z_up = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])

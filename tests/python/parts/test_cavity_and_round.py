@@ -16,7 +16,7 @@ from codesign.geometry.shape import Frame, Revolution, Shape, box, cylinder
 from codesign.parts import Part, parameter, write_step
 
 CUBE = box((0, 0, 0), (20, 20, 20))
-BALL = Revolution(Outline(-1, 0).line(1, 0).arc(-1, 0, centre=(0, 0), turn="left").close())
+BALL = Revolution(Outline(-1, 0).line(1, 0).arc(-1, 0, center=(0, 0), turn="left").close())
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def test_a_tank_is_whole_in_every_file(tmp_path: Path) -> None:
     assert text.count("BREP_WITH_VOIDS(") == 1
 
 
-def test_a_tank_is_analysed_with_its_cavity() -> None:
+def test_a_tank_is_analyzed_with_its_cavity() -> None:
     """Pressed from above: the integral of the vertical stress over the part is force times height for any shape."""
     mesh = fem.tetrahedralize(Tank(20).fem_surface(), 3e-3)
     assert mesh.quality.volume == pytest.approx(TANK_VOLUME * 1e-9, rel=1e-6)

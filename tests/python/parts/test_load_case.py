@@ -39,7 +39,7 @@ class HoledStrip(Part):
 
     def stress_case(self, settings: StressSettings) -> _core.PartCase:
         case = default_case(self, settings)
-        case.size = fem.SizeField(1.5e-3 if settings.accuracy == "optimisation" else 1.3e-3)
+        case.size = fem.SizeField(1.5e-3 if settings.accuracy == "optimization" else 1.3e-3)
         return case
 
 
@@ -81,9 +81,9 @@ def test_refinement_around_the_peak_reaches_the_tolerance_or_says_not(part):
 
 def test_confirmation_stands_beside_the_analysis(part):
     result = confirm(part, replace(SETTINGS, tolerance=0.1))
-    assert "refinements" not in result.analysed
+    assert "refinements" not in result.analyzed
     assert result.confirmed["refinements"] >= 1
-    assert result.confirmed["nodes"] > result.analysed["nodes"]
+    assert result.confirmed["nodes"] > result.analyzed["nodes"]
     assert result.confirmed["tolerance_reached"]
     assert abs(result.deviation) < 0.15
 

@@ -27,9 +27,9 @@ STUDY = synthetic_run.Study()
 WHITE = np.array([1.0, 1.0, 1.0])
 
 
-def cube(size: float, centre: tuple[float, float, float], colour: np.ndarray = WHITE, lit: bool = True) -> Body:
+def cube(size: float, center: tuple[float, float, float], color: np.ndarray = WHITE, lit: bool = True) -> Body:
     mesh = creation.box(extents=[size] * 3)
-    return Body(np.asarray(mesh.vertices) + centre, np.asarray(mesh.faces), colour, lit)
+    return Body(np.asarray(mesh.vertices) + center, np.asarray(mesh.faces), color, lit)
 
 
 def test_a_cube_covers_the_pixels_it_should():
@@ -55,10 +55,10 @@ def test_up_is_up_and_right_is_right_seen_from_the_front():
     assert (rows.mean(), columns.mean()) == pytest.approx((19.5, 59.5), abs=0.6)
 
 
-def test_colours_are_interpolated_over_a_face():
+def test_colors_are_interpolated_over_a_face():
     mesh = creation.box(extents=[1, 1, 1])
-    colours = np.repeat((np.asarray(mesh.vertices)[:, 1:2] + 0.5), 3, axis=1)
-    body = Body(np.asarray(mesh.vertices), np.asarray(mesh.faces), colours, lit=False)
+    colors = np.repeat((np.asarray(mesh.vertices)[:, 1:2] + 0.5), 3, axis=1)
+    body = Body(np.asarray(mesh.vertices), np.asarray(mesh.faces), colors, lit=False)
     picture = render([body], View(0.0, 0.0, (0, 0, 0), 1.2), 120, 120)
     assert float(picture[60, 60, 0]) == pytest.approx(127, abs=3)
     assert float(picture[60, 85, 0]) == pytest.approx(255 * 0.755, abs=3)
@@ -108,7 +108,7 @@ def test_postures_move_with_the_flight():
     assert np.linalg.norm(hand[2, :3, 3] - hand[0, :3, 3]) > 0.1
 
 
-def test_stress_colours_darken_with_stress():
+def test_stress_colors_darken_with_stress():
     tint = stress_tint(np.linspace(0.0, 1e6, 50), 1e6)
     lightness = tint @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(lightness) < 0).all()

@@ -133,7 +133,7 @@ def test_a_bar_inside_the_base_reports_its_depth():
     assert report.min_clearance == pytest.approx(-0.4, abs=1e-9)
 
 
-def test_neighbours_and_ignored_pairs_are_not_reported(swing):
+def test_neighbors_and_ignored_pairs_are_not_reported(swing):
     settings = InterferenceSettings(bodies=("bar", "post"), report_below_mm=5000)
     pairs = {(c.first, c.second) for c in check_interference(swing, settings, {}).clearances}
     assert pairs == {("base", "bar"), ("post", "ball"), ("bar", "ball")}

@@ -85,7 +85,7 @@ def test_a_joint_origin_survives_the_text_at_every_orientation(robot, rpy):
     np.testing.assert_allclose(read, T, rtol=0, atol=5e-16)
 
 
-def test_a_mesh_replaces_all_shapes_and_keeps_the_colour(robot):
+def test_a_mesh_replaces_all_shapes_and_keeps_the_color(robot):
     link = robot.set_mesh("base", "package://pair/base.stl", pose([0, 0, 1]), 0.001).link("base")
     assert len(link.visuals) == len(link.collisions) == 1
     assert link.visuals[0].geometry.mesh.filename == "package://pair/base.stl"

@@ -240,7 +240,7 @@ def center_of_mass(robot, poses):
 
 
 def rotational_inertia(robot, poses):
-    """About the centre of mass, axes of the root link."""
+    """About the center of mass, axes of the root link."""
     com, total = center_of_mass(robot, poses), np.zeros((3, 3))
     for link in robot.link_names:
         inertial = robot.inertial(link)

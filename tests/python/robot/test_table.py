@@ -62,7 +62,7 @@ def test_every_link_with_mass_is_drawn_and_can_collide(shipped):
         assert (link.inertial is not None) == bool(link.visuals) == bool(link.collisions)
 
 
-def test_masses_centres_and_inertias_are_the_published_ones(shipped, published):
+def test_masses_centers_and_inertias_are_the_published_ones(shipped, published):
     massive = [name for name in published.link_names if published.inertial(name) is not None]
     assert massive == [name for name in shipped.link_names if shipped.inertial(name) is not None]
     for name in massive:

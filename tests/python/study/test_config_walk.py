@@ -132,7 +132,7 @@ def complete(raw: dict[str, Any]) -> None:
         "reaction_n_m_per_n": 0.01, "lag_s": [0.05, 0.05, 0.06, 0.06],
     }  # fmt: skip
     raw["flight"]["ground"]["height_m"] = 0.0
-    raw["objectives"]["maximise"] = ["parts.strut.safety_factor"]
+    raw["objectives"]["maximize"] = ["parts.strut.safety_factor"]
     raw["constraints"] |= {
         "body_clearance_min_mm": 1.0, "plume_clearance_min_mm": 1.0, "first_frequency_min_hz": 10.0,
         "buckling_factor_min": 2.0, "limits": {"flight.max_torque": {"min": 0.0, "max": 60.0}},
@@ -270,12 +270,12 @@ def sensible(value: Any) -> bool:
         (("flight", "jet_model"), "turbine"),
         (("fem", "load"), "uniform"),
         (("fem", "support"), "published"),
-        (("fem", "accuracy"), "optimisation"),
+        (("fem", "accuracy"), "optimization"),
         (("interference", "bodies", 0), "front_strut"),
         (("interference", "ignore", 0, 1), "left_strut"),
         (("interference", "plumes", "jets", 0), "front_jet"),
         (("validation", "trajectories", 0), "descend_backwards"),
-        (("objectives", "minimise", 0), "momentum"),
+        (("objectives", "minimize", 0), "momentum"),
         (("objectives", "family"), "rms"),
         (("variables", "gain", "sets", 0), "flight.gains.attitude_proportional"),
     ],

@@ -98,7 +98,7 @@ def test_a_run_is_not_continued_with_another_library(tmp_path):
         resume(tmp_path, study=new, evaluations=16)
 
 
-def test_a_search_is_not_continued_with_another_optimiser(tmp_path, pretend):
+def test_a_search_is_not_continued_with_another_optimizer(tmp_path, pretend):
     fake = study()
     optimize(fake, out=tmp_path, generations=1, cache=None, workers=1)
     installed = metadata.version("pymoo")
@@ -137,7 +137,7 @@ def test_what_was_stored_without_identity_says_so():
 # --- modules beside the study file -----------------------------------------------------------------------------------
 
 
-OBJECTIVES = 'minimise = ["momentum", "joint_velocity", "thrust"]'
+OBJECTIVES = 'minimize = ["momentum", "joint_velocity", "thrust"]'
 
 
 def study_with_helper(folder: Path, factor: float, how: str = "from helpers import factor") -> Path:
@@ -149,7 +149,7 @@ def study_with_helper(folder: Path, factor: float, how: str = "from helpers impo
     file = folder / "study.toml"
     text = file.read_text()
     assert OBJECTIVES in text
-    file.write_text(text.replace(OBJECTIVES, 'minimise = ["objective:cost"]'))
+    file.write_text(text.replace(OBJECTIVES, 'minimize = ["objective:cost"]'))
     return folder
 
 

@@ -55,8 +55,8 @@ def test_paper_grid():
     [
         (
             "[variables.reach]",
-            "[variables.reach]\ncolour = 3",
-            r"study.toml: variables.reach: unknown key 'colour'; there are min, max, step",
+            "[variables.reach]\ncolor = 3",
+            r"study.toml: variables.reach: unknown key 'color'; there are min, max, step",
         ),
         ("min = 120", "min = 400", "variables.reach: max = 320 must be above min = 400"),
         ("step = 10", "step = 7", "variables.reach.step: 7 does not divide"),

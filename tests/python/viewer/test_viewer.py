@@ -87,7 +87,7 @@ def test_the_world_passes_under_a_robot_that_the_camera_follows(viewer):
     assert viewer.world_position == (0.0, 0.0, 0.0)
 
 
-def test_stress_colours_are_lit_like_paint_not_like_metal():
+def test_stress_colors_are_lit_like_paint_not_like_metal():
     mesh = tinted_mesh(np.eye(3), np.array([[0, 1, 2]]), np.array([[1.0, 0.0, 0.0]] * 3))
     data = mesh.export(file_type="glb")
     document = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
@@ -114,7 +114,7 @@ def test_nothing_to_show_is_a_clear_error(tmp_path):
         viewing.view(bare, run_directory=tmp_path / "run", port=0)
 
 
-def test_the_panel_names_units_the_scale_of_the_colours_and_joint_angles():
+def test_the_panel_names_units_the_scale_of_the_colors_and_joint_angles():
     shown = detail(synthetic_run.evaluate(synthetic_run.BASELINE))
     assert "Jetpack bracket</span><span>5.3 MPa" in legend(shown).replace("5.30", "5.3")
     assert joint_angles(shown, 3.0).startswith("j0: **0.0°**")
@@ -182,8 +182,8 @@ def test_real_link_meshes_replace_the_plain_shapes_where_they_are_installed(shar
     assert {p.link for p in real.pieces if p.part} == {p.link for p in plain.pieces if p.part}
     for link in ("chest", "root_link", "l_upper_leg", "chest_jetpack"):  # shapes and meshes are in the same place
         boxes = [np.concatenate([p.points for p in s.pieces if p.link == link]) for s in (plain, real)]
-        centres = [(box.min(axis=0) + box.max(axis=0)) / 2.0 for box in boxes]
-        assert np.allclose(*centres, atol=0.1), link
+        centers = [(box.min(axis=0) + box.max(axis=0)) / 2.0 for box in boxes]
+        assert np.allclose(*centers, atol=0.1), link
 
 
 def test_without_the_package_there_are_no_meshes(tmp_path):

@@ -32,7 +32,7 @@ class FigureKind:
 
 
 FIGURES = (
-    FigureKind("front", "All designs in two objectives; the third colours the best compromises.", fronts.front),
+    FigureKind("front", "All designs in two objectives; the third colors the best compromises.", fronts.front),
     FigureKind("projections", "All designs in every pair of objectives.", fronts.projections),
     FigureKind("chosen", "Chosen designs: parameters over their bounds, objectives over their range.", designs.chosen),
     FigureKind("parallel", "Parameters and objectives of all feasible designs.", designs.parallel),

@@ -15,7 +15,7 @@ from codesign.report.figures.data import FigureData
 from codesign.report.pareto import Matrix
 from codesign.report.words import number
 
-COLOURS = (style.INK, style.BLUE, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
+COLORS = (style.INK, style.BLUE, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
 
 
 def chosen(data: FigureData) -> Any:
@@ -41,8 +41,8 @@ def draw_chosen(run: ReportData, shown: dict[str, Evaluation]) -> Any:
         _lines(axes, names[part], low[part], high[part])
         axes.set_title(title)
         places = np.arange(len(names[part]))
-        for (role, values), (colour, size) in zip(zip(shown, scaled[:, part], strict=True), _looks(shown), strict=True):
-            axes.scatter(values, places, 26.0 * size, colour, "D" if role == "original" else "o", label=role, zorder=3,
+        for (role, values), (color, size) in zip(zip(shown, scaled[:, part], strict=True), _looks(shown), strict=True):
+            axes.scatter(values, places, 26.0 * size, color, "D" if role == "original" else "o", label=role, zorder=3,
                 edgecolors="white", linewidths=0.5)  # fmt: skip
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
@@ -64,7 +64,7 @@ def _lines(axes: Any, names: Sequence[str], low: Matrix, high: Matrix) -> None:
 
 
 def parallel(data: FigureData) -> Any:
-    """Every feasible design as a line over parameters and objectives; the first objective colours the front."""
+    """Every feasible design as a line over parameters and objectives; the first objective colors the front."""
     from matplotlib import colormaps
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
@@ -90,8 +90,8 @@ def parallel(data: FigureData) -> Any:
     for name, evaluation in data.compared.items():
         if np.isfinite(run.vector(evaluation)).all():
             (line,) = lines([_row(run, evaluation)])
-            colour = style.ORIGINAL if name == "original" else style.INK
-            axes.plot(*line.T, color=colour, linewidth=2.0, label=name, clip_on=False)
+            color = style.ORIGINAL if name == "original" else style.INK
+            axes.plot(*line.T, color=color, linewidth=2.0, label=name, clip_on=False)
     axes.set(xlim=(0, len(names) - 1), ylim=(-0.03, 1.03), yticks=[])
     axes.set_xticks(places, [style.wrapped(name, style.PAGE / len(names)) for name in names])
     axes.grid(visible=False, axis="y")
@@ -130,7 +130,7 @@ def _scales(run: ReportData) -> tuple[list[str], Matrix, Matrix]:
 
 
 def _looks(chosen: dict[str, Evaluation]) -> list[tuple[str, float]]:
-    """Colour and line width of each role; the original and the recommended stand out."""
-    colours = iter(COLOURS[1:])
+    """Color and line width of each role; the original and the recommended stand out."""
+    colors = iter(COLORS[1:])
     special = {"recommended": (style.INK, 1.8), "original": (style.ORIGINAL, 1.8)}
-    return [special.get(role) or (next(colours, style.MUTED), 1.1) for role in chosen]
+    return [special.get(role) or (next(colors, style.MUTED), 1.1) for role in chosen]

@@ -53,7 +53,7 @@ def histories(data: FigureData) -> Any:
     rows[4].plot(
         main["time"], main["active_bounds"], color=style.BLUE, label="active bounds of\nthe momentum QP", linewidth=0.9
     )
-    rows[4].plot(main["time"], main["qp_iterations"][:, 0], color=style.ORANGE, label="factorisations", linewidth=0.9)
+    rows[4].plot(main["time"], main["qp_iterations"][:, 0], color=style.ORANGE, label="factorizations", linewidth=0.9)
     rows[4].set(ylabel="QP", xlabel="time (s)", xlim=(0.0, main["time"][-1]))
     for axes in rows:
         if axes.get_legend_handles_labels()[0]:

@@ -13,7 +13,7 @@ from codesign.report.figures.data import FigureData
 
 
 def front(data: FigureData) -> Any:
-    """All designs in the first two objectives, the front coloured by the third."""
+    """All designs in the first two objectives, the front colored by the third."""
     from matplotlib.figure import Figure
 
     run = data.run
@@ -21,7 +21,7 @@ def front(data: FigureData) -> Any:
         return None
     figure = Figure(figsize=(style.COLUMN * 1.35, style.COLUMN * 1.05))
     axes = figure.subplots()
-    dots = draw_projection(axes, run, 0, 1, colour=2 if len(run.objectives) > 2 else None)
+    dots = draw_projection(axes, run, 0, 1, color=2 if len(run.objectives) > 2 else None)
     if dots is not None and len(run.objectives) > 2:
         bar = figure.colorbar(dots, ax=axes, aspect=32, pad=0.02)
         bar.set_label(style.wrapped(run.objectives[2].title, style.COLUMN * 0.9))
@@ -47,8 +47,8 @@ def projections(data: FigureData) -> Any:
     return figure
 
 
-def draw_projection(axes: Any, run: ReportData, x: int, y: int, colour: int | None = None) -> Any:
-    """Designs in objectives `x` and `y`; the front's markers are coloured by objective `colour`. Returns them."""
+def draw_projection(axes: Any, run: ReportData, x: int, y: int, color: int | None = None) -> Any:
+    """Designs in objectives `x` and `y`; the front's markers are colored by objective `color`. Returns them."""
     values = run.values
     known = np.isfinite(values).all(axis=1)
     infeasible = known & ~run.feasible
@@ -59,9 +59,9 @@ def draw_projection(axes: Any, run: ReportData, x: int, y: int, colour: int | No
             values[infeasible, x], values[infeasible, y], 9, style.LOST, "x", linewidths=0.6, label="infeasible"
         )
     axes.scatter(values[behind, x], values[behind, y], 6, style.DOT, linewidths=0, label="feasible")
-    tint = style.BLUE if colour is None else values[run.front, colour]
+    tint = style.BLUE if color is None else values[run.front, color]
     dots = axes.scatter(
-        values[run.front, x], values[run.front, y], 20, tint, cmap=None if colour is None else style.THIRD,
+        values[run.front, x], values[run.front, y], 20, tint, cmap=None if color is None else style.THIRD,
         edgecolors="white", linewidths=0.4, label="best compromise", zorder=3,
     )  # fmt: skip
     if run.baseline_vector is not None:

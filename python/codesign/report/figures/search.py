@@ -29,10 +29,10 @@ def convergence(data: FigureData) -> Any:
     upper.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
     edges = np.linspace(0, len(run.entries), min(BATCHES, len(run.entries)) + 1)
     bottom = np.zeros(len(edges) - 1)
-    for status, colour in STATUSES.items():
+    for status, color in STATUSES.items():
         at = [k + 0.5 for k, entry in enumerate(run.entries) if entry.evaluation.status == status]
         share = np.histogram(at, edges)[0] / np.maximum(np.diff(edges), 1e-9)
-        lower.bar(edges[:-1], share, np.diff(edges), bottom, align="edge", color=colour, linewidth=0, label=status)
+        lower.bar(edges[:-1], share, np.diff(edges), bottom, align="edge", color=color, linewidth=0, label=status)
         bottom += share
     lower.set(ylabel="designs", xlabel="designs evaluated", ylim=(0.0, 1.0), xlim=(0, len(run.entries)))
     lower.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))

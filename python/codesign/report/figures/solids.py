@@ -56,11 +56,11 @@ def stress(data: FigureData) -> Any:
 
 
 def stress_bar(figure: Any, axes: Any, highest: float) -> None:
-    """Colour bar of von Mises stress from 0 to `highest` [Pa]."""
+    """Color bar of von Mises stress from 0 to `highest` [Pa]."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    scale = ScalarMappable(Normalize(0.0, highest / 1e6), style.stress_colours())
+    scale = ScalarMappable(Normalize(0.0, highest / 1e6), style.stress_colors())
     bar = figure.colorbar(scale, ax=axes, aspect=40, pad=0.02, extend="max")
     bar.set_label("von Mises stress (MPa)")
     bar.outline.set_visible(False)
@@ -72,12 +72,12 @@ def _stress_picture(part: StressField, highest: float) -> NDArray[np.uint8]:
 
 
 def stress_tint(von_mises: Array, highest: float) -> Array:
-    """Colours (n, 3) of stresses (n,) on a scale that ends at `highest` [Pa]."""
-    return np.asarray(style.stress_colours()(von_mises / max(highest, 1e-30))[:, :3])
+    """Colors (n, 3) of stresses (n,) on a scale that ends at `highest` [Pa]."""
+    return np.asarray(style.stress_colors()(von_mises / max(highest, 1e-30))[:, :3])
 
 
 def parts_on_robot(data: FigureData) -> Any:
-    """The robot with the original and with the recommended parts, coloured."""
+    """The robot with the original and with the recommended parts, colored."""
     from matplotlib.figure import Figure
 
     if data.study is None or len(data.compared) < 2:
@@ -152,8 +152,8 @@ def robot_bodies(
     bodies = []
     for piece in scene.pieces:
         pose = poses[piece.link]
-        colour = style.PART if piece.part is not None else tuple(0.45 + 0.55 * c for c in piece.colour)
-        bodies.append(Body(piece.points @ pose[:3, :3].T + pose[:3, 3], piece.triangles, np.array(colour)))
+        color = style.PART if piece.part is not None else tuple(0.45 + 0.55 * c for c in piece.color)
+        bodies.append(Body(piece.points @ pose[:3, :3].T + pose[:3, 3], piece.triangles, np.array(color)))
     for jet, push, thrust in zip(scene.jets, scene.pushes, [] if thrusts is None else thrusts, strict=False):
         bodies.append(_flame(poses[jet], -push, float(thrust) / scene.max_thrust, scene.size))
     return bodies
@@ -179,7 +179,7 @@ def _flame(pose: Matrix, exhaust: Array, share: float, size: float) -> Body:
 
 
 def snapshots(data: FigureData) -> Any:
-    """The flight in one picture: the robot at equal times, in its true places, with the path of its centre of mass."""
+    """The flight in one picture: the robot at equal times, in its true places, with the path of its center of mass."""
     from matplotlib.figure import Figure
 
     evaluation = data.recommended or data.run.baseline
@@ -218,7 +218,7 @@ def _spread_over_path(flight: FlightHistory) -> list[int]:
 
 
 def show_picture(axes: Any, image: NDArray[np.uint8], view: View | None = None) -> None:
-    """An image without axes; with a view, coordinates are metres on the screen, from its centre."""
+    """An image without axes; with a view, coordinates are meters on the screen, from its center."""
     extent = None
     if view is not None:
         half = view.height / 2.0
@@ -230,7 +230,7 @@ def show_picture(axes: Any, image: NDArray[np.uint8], view: View | None = None) 
 
 def on_screen(view: View, points: Array) -> Array:
     """Screen coordinates (n, 2) [m] of points (n, 3)."""
-    return np.asarray((points - np.array(view.centre)) @ view.axes()[:2].T)
+    return np.asarray((points - np.array(view.center)) @ view.axes()[:2].T)
 
 
 def _scale_bar(axes: Any, view: View) -> None:

@@ -1,4 +1,4 @@
-"""One look for all figures: column widths of a paper, quiet axes, colours that survive colour blindness."""
+"""One look for all figures: column widths of a paper, quiet axes, colors that survive color blindness."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def wrapped(text: str, width: float, size: float = 8.0) -> str:
     return "\n".join(textwrap.wrap(text.replace(" (", "\n("), letters, replace_whitespace=False))
 
 
-def stress_colours() -> Any:
-    """Colour map of stresses: light and unloaded to dark and loaded."""
+def stress_colors() -> Any:
+    """Color map of stresses: light and unloaded to dark and loaded."""
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("stress", list(zip(STRESS_STOPS, STRESS, strict=True)))

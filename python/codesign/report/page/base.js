@@ -6,7 +6,7 @@ const FEASIBLE = 0, INFEASIBLE = 1, FAILED = 2;
 const STATUS = ['feasible', 'infeasible', 'failed'];
 const element = id => document.getElementById(id);
 const escaped = text => String(text).replace(/[&<>"]/g, c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'})[c]);
-const colour = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+const color = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 const known = value => value !== null && value !== undefined;
 
 /** A number with about `digits` significant digits and a true minus sign, never in exponent form for usual sizes. */
@@ -44,14 +44,14 @@ function change(design, k) {
   return (design.f[k] - original.f[k]) / Math.abs(original.f[k]);
 }
 
-const font = () => ({family: getComputedStyle(document.body).fontFamily, size: 12.5, color: colour('muted')});
+const font = () => ({family: getComputedStyle(document.body).fontFamily, size: 12.5, color: color('muted')});
 const axis = (title, more = {}) => ({
-  title: {text: title, font: {...font(), size: 13}, standoff: 10}, gridcolor: colour('line'), zeroline: false, linecolor: colour('strong'),
-  ticks: 'outside', ticklen: 4, tickcolor: colour('strong'), tickfont: font(), ...more,
+  title: {text: title, font: {...font(), size: 13}, standoff: 10}, gridcolor: color('line'), zeroline: false, linecolor: color('strong'),
+  ticks: 'outside', ticklen: 4, tickcolor: color('strong'), tickfont: font(), ...more,
 });
 const layout = (more = {}) => ({
   paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)', font: font(), margin: {l: 66, r: 16, t: 10, b: 52}, showlegend: false,
-  hoverlabel: {bgcolor: colour('bg'), bordercolor: colour('strong'), font: {...font(), color: colour('ink')}, align: 'left'}, ...more,
+  hoverlabel: {bgcolor: color('bg'), bordercolor: color('strong'), font: {...font(), color: color('ink')}, align: 'left'}, ...more,
 });
 /** Plotly, which takes a second or two to start: on first use, so that the page can be read before its charts stand. */
 function plotly() {

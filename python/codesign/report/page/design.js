@@ -1,5 +1,5 @@
 /** The selected design: its card beside the chart, its parts in 3-D, its flight. */
-// Light to dark with monotone lightness: a part reads as a lit body, and the order survives colour blindness and grey print.
+// Light to dark with monotone lightness: a part reads as a lit body, and the order survives color blindness and grey print.
 const STRESS_SCALE = [[0, '#e3e6e8'], [0.2, '#f4e3a1'], [0.45, '#f2ac42'], [0.7, '#d2601a'], [1, '#7a1616']];
 
 function card(i) {
@@ -51,7 +51,7 @@ function drawParts(i) {
     if (!values) return '';
     const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd>${before(d, k, n, factor, digits)}</div>`);
     const about = [part.material, part.load && `Load: ${part.load}`].filter(Boolean).map(text => `<p class="count">${escaped(text)}.</p>`).join('') + (part.warning ? `<p class="count bad">${escaped(part.warning)}</p>` : '');
-    const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, coloured by stress; drag to turn"></div>${stressScale(detail.parts[part.key])}` : '';
+    const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, colored by stress; drag to turn"></div>${stressScale(detail.parts[part.key])}` : '';
     return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl>${about}</article>`;
   });
   document.querySelectorAll('.solid').forEach(node => window.Plotly?.purge(node));
@@ -101,33 +101,33 @@ function drawSolid(node, solid) {
   const mesh = solid.decoded ??= decodedSolid(solid);
   const hidden = {visible: false, showspikes: false};
   plotly().newPlot(node, [{
-    type: 'mesh3d', x: mesh.x, y: mesh.y, z: mesh.z, i: mesh.i, j: mesh.j, k: mesh.k, facecolor: mesh.colours, text: mesh.text, hovertemplate: '%{text} MPa<extra></extra>',
+    type: 'mesh3d', x: mesh.x, y: mesh.y, z: mesh.z, i: mesh.i, j: mesh.j, k: mesh.k, facecolor: mesh.colors, text: mesh.text, hovertemplate: '%{text} MPa<extra></extra>',
     lighting: {ambient: 1, diffuse: 0, specular: 0, fresnel: 0},
   }], layout({margin: {l: 0, r: 0, t: 0, b: 0}, scene: {xaxis: hidden, yaxis: hidden, zaxis: hidden, aspectmode: 'manual', aspectratio: mesh.ratio, dragmode: 'orbit', camera: {eye: eye(node), projection: {type: 'orthographic'}}}}), settings);
 }
 
-/** Arrays for plotly, with a colour for each triangle: that of its stress, shaded here because plotly's lights fail without perspective. */
+/** Arrays for plotly, with a color for each triangle: that of its stress, shaded here because plotly's lights fail without perspective. */
 function decodedSolid(solid) {
   const grid = decode(solid.points, Uint16Array), faces = decode(solid.faces, solid.wide ? Uint32Array : Uint16Array);
   const stress = Float32Array.from(decode(solid.stress, Uint16Array), s => s / 65535 * solid.highest);
   const coordinate = k => Float32Array.from({length: grid.length / 3}, (_, n) => solid.low[k] + grid[3 * n + k] * solid.step);
   const corner = k => Uint32Array.from({length: faces.length / 3}, (_, n) => faces[3 * n + k]);
   const [x, y, z, i, j, k] = [coordinate(0), coordinate(1), coordinate(2), corner(0), corner(1), corner(2)];
-  const colours = Array.from(i, (a, n) => {
+  const colors = Array.from(i, (a, n) => {
     const b = j[n], c = k[n];
     const [ux, uy, uz, vx, vy, vz] = [x[b] - x[a], y[b] - y[a], z[b] - z[a], x[c] - x[a], y[c] - y[a], z[c] - z[a]];
     const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
     const facing = (nx * LIGHT[0] + ny * LIGHT[1] + nz * LIGHT[2]) / (Math.hypot(nx, ny, nz) || 1);
-    return stressColour((stress[a] + stress[b] + stress[c]) / 3 / (solid.peak || 1), 0.8 + 0.2 * facing);
+    return stressColor((stress[a] + stress[b] + stress[c]) / 3 / (solid.peak || 1), 0.8 + 0.2 * facing);
   });
-  return {x, y, z, i, j, k, colours, ratio: ratio(x, y, z), text: Array.from(stress, s => number(s * 1e-6, 3))};
+  return {x, y, z, i, j, k, colors, ratio: ratio(x, y, z), text: Array.from(stress, s => number(s * 1e-6, 3))};
 }
 
 const LIGHT = [0.3, -0.55, 0.78];
 const STRESS_STOPS = STRESS_SCALE.map(([at, hex]) => [at, [1, 3, 5].map(n => parseInt(hex.slice(n, n + 2), 16))]);
 
-/** Colour of a stress relative to the peak, darkened by `shade`. */
-function stressColour(share, shade) {
+/** Color of a stress relative to the peak, darkened by `shade`. */
+function stressColor(share, shade) {
   const at = Math.min(Math.max(share, 0), 1), n = Math.max(1, STRESS_STOPS.findIndex(([stop]) => stop >= at));
   const [[low, from], [high, to]] = [STRESS_STOPS[n - 1], STRESS_STOPS[n]], part = (at - low) / (high - low);
   return `rgb(${from.map((c, m) => Math.round(shade * (c + part * (to[m] - c)))).join()})`;
@@ -159,10 +159,10 @@ function drawHistory(node, flight, chart, reference, k) {
   const alone = chart.series.length === 1;
   if (reference && alone && reference.charts[k]) traces.push({
     type: 'scatter', mode: 'lines', x: decoded(reference, reference.time), y: decoded(reference, reference.charts[k].series[0]), name: 'original',
-    line: {color: colour('original'), width: 1.3, dash: 'dot'}, hovertemplate: '%{y:.3g} original<extra></extra>',
+    line: {color: color('original'), width: 1.3, dash: 'dot'}, hovertemplate: '%{y:.3g} original<extra></extra>',
   });
   chart.series.forEach((series, n) => traces.push({
-    type: 'scatter', mode: 'lines', x: time, y: decoded(flight, series), name: series.label, line: {color: colour(SERIES[n % 4]), width: 1.6},
+    type: 'scatter', mode: 'lines', x: time, y: decoded(flight, series), name: series.label, line: {color: color(SERIES[n % 4]), width: 1.6},
     hovertemplate: `%{y:.3g} ${alone ? 'this design' : escaped(series.label)}<extra></extra>`,
   }));
   const legend = {orientation: 'h', x: 1, xanchor: 'right', y: 1.02, yanchor: 'bottom', font: font(), bgcolor: 'rgba(0,0,0,0)'};

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codesign.report.details import Detail, FlightHistory, StressField
-from codesign.units import DEGREE, MILLIMETRE
+from codesign.units import DEGREE, MILLIMETER
 
 LEVELS = 65535
 
@@ -39,8 +39,8 @@ def _solid(part: StressField) -> dict[str, Any]:
         "faces": encoded(part.triangles, "u4" if wide else "u2"),
         "stress": encoded(np.rint(np.clip(part.von_mises / highest, 0.0, 1.0) * LEVELS), "u2"),
         "wide": wide,
-        "low": [round(float(x) / MILLIMETRE, 4) for x in low],
-        "step": step / MILLIMETRE,
+        "low": [round(float(x) / MILLIMETER, 4) for x in low],
+        "step": step / MILLIMETER,
         "highest": highest,
         "peak": min(part.peak, highest),
     }

@@ -1,4 +1,4 @@
-/** The trade-off chart: two objectives as axes, a third as colour. */
+/** The trade-off chart: two objectives as axes, a third as color. */
 const front = {x: 0, y: Math.min(1, report.objectives.length - 1), ready: false, last: null};
 
 const points = test => designs.map((d, i) => i).filter(i => test(designs[i]) && known(designs[i].f[front.x]) && known(designs[i].f[front.y]));
@@ -23,18 +23,18 @@ function frontTraces() {
   const scale = known(z) ? {
     color: best.map(i => designs[i].f[z]), colorscale: 'Viridis', reversescale: false, showscale: true,
     colorbar: {title: {text: report.objectives[z].title, side: 'right', font: font()}, thickness: 10, outlinewidth: 0, len: 0.8, tickfont: font(), ticklen: 0},
-  } : {color: colour('accent')};
+  } : {color: color('accent')};
   const traces = [
-    markers(points(d => d.status === INFEASIBLE), {symbol: 'x-thin', size: 6, line: {width: 1.2, color: colour('lost')}}, 'infeasible'),
-    markers(points(d => d.status === FEASIBLE && !d.front), {size: 6, color: colour('dot'), opacity: 0.75}, 'feasible'),
-    markers(best, {size: 10, symbol: best.map(i => designs[i].barred ? 'circle-open' : 'circle'), line: {width: 1, color: colour('bg')}, ...scale}, 'best compromise'),
+    markers(points(d => d.status === INFEASIBLE), {symbol: 'x-thin', size: 6, line: {width: 1.2, color: color('lost')}}, 'infeasible'),
+    markers(points(d => d.status === FEASIBLE && !d.front), {size: 6, color: color('dot'), opacity: 0.75}, 'feasible'),
+    markers(best, {size: 10, symbol: best.map(i => designs[i].barred ? 'circle-open' : 'circle'), line: {width: 1, color: color('bg')}, ...scale}, 'best compromise'),
   ];
   const at = points(d => d === original);
-  traces.push(markers(at, {symbol: 'diamond', size: 13, color: colour('original'), line: {width: 1.5, color: colour('bg')}}, 'original'));
+  traces.push(markers(at, {symbol: 'diamond', size: 13, color: color('original'), line: {width: 1.5, color: color('bg')}}, 'original'));
   const build = points(d => designs[report.recommended] === d);
-  traces.push(markers(build, {symbol: 'star', size: 17, color: colour('ink'), line: {width: 1.5, color: colour('bg')}}, 'recommended'));
-  traces.push({...markers([], {symbol: 'circle-open', size: 22, color: colour('accent'), line: {width: 2.5}}, 'selected'), hoverinfo: 'skip', hovertemplate: null});
-  traces.push({...markers([], {symbol: 'circle-open', size: 18, color: colour('ink'), line: {width: 1.5}}, 'hover'), hoverinfo: 'skip', hovertemplate: null});
+  traces.push(markers(build, {symbol: 'star', size: 17, color: color('ink'), line: {width: 1.5, color: color('bg')}}, 'recommended'));
+  traces.push({...markers([], {symbol: 'circle-open', size: 22, color: color('accent'), line: {width: 2.5}}, 'selected'), hoverinfo: 'skip', hovertemplate: null});
+  traces.push({...markers([], {symbol: 'circle-open', size: 18, color: color('ink'), line: {width: 1.5}}, 'hover'), hoverinfo: 'skip', hovertemplate: null});
   return traces;
 }
 

@@ -46,7 +46,7 @@ function save(what) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-/** Draws everything at the width of the paper, in light colours; and back. */
+/** Draws everything at the width of the paper, in light colors; and back. */
 function forPaper(starts) {
   document.documentElement.classList.toggle('printing', starts);
   paint(starts ? 'light' : remembered() || (system.matches ? 'dark' : 'light'));

@@ -12,7 +12,7 @@ import numpy as np
 from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, cylinder
 from codesign.parts.part import Part, parameter
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 PLATE, WIDTH, SEAT_RADIUS = 12.0, 24.0, 24.0
 ROOT_FILLET = 6.0  # where bar and plate meet: the stressed corner
@@ -41,7 +41,7 @@ class Strut(Part):
         return Extrusion(side, -WIDTH / 2.0, WIDTH / 2.0, across) + seat
 
     def interfaces(self) -> dict[str, Vector]:
-        """jet: centre of the seat's lower face, axes of the part [m]."""
+        """jet: center of the seat's lower face, axes of the part [m]."""
         part_T_jet = np.eye(4)
-        part_T_jet[:3, 3] = np.array([self.reach, 0.0, -self.height / 2.0 - 4.0]) * MILLIMETRE
+        part_T_jet[:3, 3] = np.array([self.reach, 0.0, -self.height / 2.0 - 4.0]) * MILLIMETER
         return {"jet": part_T_jet}

@@ -16,7 +16,7 @@ from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, box, cylinder, polar, stepped_hole, union
 from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, clamp, load_cases, native_case
 from codesign.parts.part import Part, parameter
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 BASE = 15.0  # thickness of the base; the slab's is a field, see `thickness`
 HALF_WIDTH = 30.0
@@ -27,7 +27,7 @@ SEAT_HOLES = polar(19.7, 10.0, -10.0, 110.0, -110.0, 130.0, -130.0)
 SCREWS = [(4.0, 10.0), (4.0, -10.0)]
 COUNTERBORE_RADIUS, COUNTERBORE_DEPTH = 3.0, 3.4  # of the seat's holes, from the upper face
 SCREW_RADIUS = 4.2
-TURBINE_REACH = 95.0  # from the seat's centre to the turbine's axis on the right; 94.5 on the left
+TURBINE_REACH = 95.0  # from the seat's center to the turbine's axis on the right; 94.5 on the left
 MINIMUM_WALL = 2.0
 FAR = 400.0  # beyond the part, for tools that cut through
 
@@ -67,7 +67,7 @@ class JetpackBracket(Part):
 
     @property
     def _seat_frame(self) -> Frame:
-        """Origin in the seat's centre on the slab's lower face, x along the slab, z from there into the slab."""
+        """Origin in the seat's center on the slab's lower face, x along the slab, z from there into the slab."""
         crease = Frame((self._upper_crease_x, 0.0, BASE), self._along, (0.0, 1.0, 0.0))
         return crease.at(self.distance, 0.0, -self.thickness)
 
@@ -91,10 +91,10 @@ class JetpackBracket(Part):
         return self._build()
 
     def fem_shape(self, geometry: str = "simplified", support: str = "published", half: bool = True) -> Shape:
-        """The part, or its half y >= 0 with the face `symmetry`, as it is analysed.
+        """The part, or its half y >= 0 with the face `symmetry`, as it is analyzed.
 
         geometry: "full"; "simplified" without pocket, holes and dowel hole, where `seat` is the slab's whole lower face
-        and the load acts on the disc `seat_radius` about `seat_centre`. support: "published" names both base faces up
+        and the load acts on the disc `seat_radius` about `seat_center`. support: "published" names both base faces up
         to the creases `mount`; "bolted" names the contact with the jetpack `pad` and the screws' `screw_seat` instead.
         """
         if geometry not in ("full", "simplified") or support not in ("published", "bolted"):
@@ -135,20 +135,20 @@ class JetpackBracket(Part):
         )  # fmt: skip
         body = Extrusion(side, -HALF_WIDTH, HALF_WIDTH, Frame(x=(1.0, 0.0, 0.0), y=(0.0, 0.0, 1.0)))
         neck = (
-            Path(-21.0, 20.0).line(15.0, 20.0).arc(20.0, 25.0, centre=(15.0, 25.0)).line(20.0, 31.0)
+            Path(-21.0, 20.0).line(15.0, 20.0).arc(20.0, 25.0, center=(15.0, 25.0)).line(20.0, 31.0)
             .line(-21.0, 31.0).close()
         )  # fmt: skip
         beside_neck = Extrusion(neck, -1.0, BASE)
         r = HALF_WIDTH
         round_end = (
-            Path(0.0, r).arc(0.0, -r, centre=(0.0, 0.0), turn="right").line(0.0, -r - 1.0)
+            Path(0.0, r).arc(0.0, -r, center=(0.0, 0.0), turn="right").line(0.0, -r - 1.0)
             .line(tip + 1.0, -r - 1.0).line(tip + 1.0, r + 1.0).line(0.0, r + 1.0).close()
         )  # fmt: skip
         beyond_end = Extrusion(round_end, -1.0, self.thickness + 1.0).placed(slab)
         return body - beside_neck - beside_neck.mirrored("y") - beyond_end
 
     def _seat_tools(self) -> list[Shape]:
-        """Pocket in the lower face and six counterbored holes around its centre."""
+        """Pocket in the lower face and six counterbored holes around its center."""
         top = self.thickness
         shoulder = top - COUNTERBORE_DEPTH
         hole = stepped_hole((SEAT_HOLE_RADIUS, 0.0, shoulder), (COUNTERBORE_RADIUS, shoulder, top + 1.0))
@@ -160,17 +160,17 @@ class JetpackBracket(Part):
         x, z = self.slab_direction, -self.slab_normal
         part_T_seat = np.eye(4)
         part_T_seat[:3, :3] = np.column_stack([x, np.cross(z, x), z])
-        part_T_seat[:3, 3] = np.array(self._seat_frame.point(0.0, 0.0, SEAT_DEPTH)) * MILLIMETRE
+        part_T_seat[:3, 3] = np.array(self._seat_frame.point(0.0, 0.0, SEAT_DEPTH)) * MILLIMETER
         return {"turbine_seat": part_T_seat}
 
-    # What a load case needs to know, in metres and part axes.
+    # What a load case needs to know, in meters and part axes.
 
-    seat_radius = SEAT_RADIUS * MILLIMETRE
+    seat_radius = SEAT_RADIUS * MILLIMETER
 
     @property
-    def seat_centre(self) -> Vector:
-        """(3,) centre of the seat on the slab's lower face [m]; the pocket's floor is 1 mm further along the normal."""
-        return np.array(self._seat_frame.origin) * MILLIMETRE
+    def seat_center(self) -> Vector:
+        """(3,) center of the seat on the slab's lower face [m]; the pocket's floor is 1 mm further along the normal."""
+        return np.array(self._seat_frame.origin) * MILLIMETER
 
     @property
     def slab_direction(self) -> Vector:
@@ -185,24 +185,24 @@ class JetpackBracket(Part):
     @property
     def lower_crease(self) -> Vector:
         """(3,) point of the lower crease in the plane of symmetry [m]; the crease is parallel to y."""
-        return np.array([LOWER_CREASE, 0.0, 0.0]) * MILLIMETRE
+        return np.array([LOWER_CREASE, 0.0, 0.0]) * MILLIMETER
 
     @property
     def upper_crease(self) -> Vector:
         """(3,) point of the upper crease in the plane of symmetry [m]; the crease is parallel to y."""
-        return np.array([self._upper_crease_x, 0.0, BASE]) * MILLIMETRE
+        return np.array([self._upper_crease_x, 0.0, BASE]) * MILLIMETER
 
     @property
     def turbine_axis(self) -> Vector:
         """(3,) point of the turbine's axis, which is parallel to the slab's normal, in the plane of the seat [m]."""
-        return self.seat_centre + TURBINE_REACH * MILLIMETRE * self.slab_direction
+        return self.seat_center + TURBINE_REACH * MILLIMETER * self.slab_direction
 
-    half_width = HALF_WIDTH * MILLIMETRE
+    half_width = HALF_WIDTH * MILLIMETER
 
     def stress_case(self, settings: StressSettings) -> _core.PartCase:
         """The half y >= 0, finest along both creases, where the stress is largest.
 
-        The load is a traction over the seat's disc, affine so that force and moment are exact; its centre is that of
+        The load is a traction over the seat's disc, affine so that force and moment are exact; its center is that of
         the pocket's floor, or the turbine's axis (`load = "thrust_line"`).
         """
         if settings.load not in ("uniform", "thrust_line"):
@@ -211,24 +211,24 @@ class JetpackBracket(Part):
         surface = self.fem_surface(settings.geometry, settings.segments, support=settings.support)
         floor = math.pi * SEAT_RADIUS**2 / 2.0 - len(SEAT_HOLES) / 2.0 * math.pi * SEAT_HOLE_RADIUS**2
         moment = 2.0 / 3.0 * SEAT_RADIUS**3 - sum(y * math.pi * SEAT_HOLE_RADIUS**2 for _, y in SEAT_HOLES if y > 0.0)
-        aside = np.array([0.0, moment / floor, 0.0]) * MILLIMETRE  # centroid of half of the floor
-        centre = self.turbine_axis if settings.load == "thrust_line" else self.seat_centre
+        aside = np.array([0.0, moment / floor, 0.0]) * MILLIMETER  # centroid of half of the floor
+        center = self.turbine_axis if settings.load == "thrust_line" else self.seat_center
         whole = settings.geometry == "full"
-        disc = None if whole else fem.Disc(self.seat_centre, self.slab_normal, self.seat_radius)
+        disc = None if whole else fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
 
         def traction(load: PressedFace | PushedFace) -> fem.Load:
             force = load.along(self.slab_normal)
             if force[1] != 0.0:
                 raise GeometryError(
-                    f"{self.name}: the half y >= 0 is analysed: a force with a y component cannot be applied"
+                    f"{self.name}: the half y >= 0 is analyzed: a force with a y component cannot be applied"
                 )
-            return fem.AffineTraction(load.face, 0.5 * force, centre + aside, region=disc)
+            return fem.AffineTraction(load.face, 0.5 * force, center + aside, region=disc)
 
         for load in (load for case in settings.cases for load in case.loads):
             if not isinstance(load, PressedFace | PushedFace | fem.Pressure):
                 kind = type(load).__name__
                 raise GeometryError(
-                    f"{self.name}: the half y >= 0 is analysed: it takes forces and pressures, no {kind}"
+                    f"{self.name}: the half y >= 0 is analyzed: it takes forces and pressures, no {kind}"
                 )
         cases = load_cases(settings, traction)
         held = [clamp(*supports), fem.Support("symmetry", axes="y", symmetry=True)]
@@ -236,14 +236,14 @@ class JetpackBracket(Part):
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
         """Fine along lines 2 mm behind each crease, on the side away from the clamp."""
-        fine = settings.accuracy != "optimisation"
+        fine = settings.accuracy != "optimization"
         base, size, growth, radius = (8.0, 0.5, 0.35, 2.0) if fine else (12.0, 0.8, 0.5, 1.5)
         across = np.array([0.0, self.half_width, 0.0])
-        behind = 2.0 * MILLIMETRE * self.slab_direction
+        behind = 2.0 * MILLIMETER * self.slab_direction
         sources = [
             fem.SizeSource(
-                np.array([crease + behind, crease + behind + across]), size * MILLIMETRE, growth, radius * MILLIMETRE
+                np.array([crease + behind, crease + behind + across]), size * MILLIMETER, growth, radius * MILLIMETER
             )
             for crease in (self.lower_crease, self.upper_crease)
         ]
-        return fem.SizeField(base * MILLIMETRE, sources)
+        return fem.SizeField(base * MILLIMETER, sources)

@@ -29,7 +29,7 @@ from codesign.geometry.shape import (
 )
 from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, clamp, load_cases, native_case
 from codesign.parts.part import Part, parameter
-from codesign.units import MILLIMETRE
+from codesign.units import MILLIMETER
 
 AXIS: Triple = (0.0, 15.0, 0.0)  # a point of the rod's axis
 ALONG = Frame(AXIS, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))  # for revolutions: (x, distance from the axis)
@@ -104,7 +104,7 @@ class ForearmJetSupport(Part):
         return self._build()
 
     def fem_shape(self, geometry: str = "simplified") -> Shape:
-        """The part as it is analysed: "full", or "simplified" without stub, spigot and spot faces.
+        """The part as it is analyzed: "full", or "simplified" without stub, spigot and spot faces.
 
         Both have the faces `mount` and `seat`.
         """
@@ -120,11 +120,11 @@ class ForearmJetSupport(Part):
             turned = turned - flat - flat.rotated("x", 180.0, about=AXIS)
         clamp = Extrusion(self.clamp_outline(), self._seat_x, self._clamp_x, ACROSS, start_face="seat")
         shape = union(turned, self._flange(), clamp)
-        for radius, centres in FLANGE_HOLES:
+        for radius, centers in FLANGE_HOLES:
             hole = cylinder(radius, RELIEF_X, -5.0)
             if radius == SCREW_HOLE and spot_faces and self.spot_face > radius:
                 hole = stepped_hole((self.spot_face, RELIEF_X, ROD_X), (radius, ROD_X, -5.0))
-            shape = shape - at_points(hole, centres).placed(ACROSS)
+            shape = shape - at_points(hole, centers).placed(ACROSS)
         return shape
 
     def _turned(self, stub: bool, spigot: bool) -> Shape:
@@ -140,8 +140,8 @@ class ForearmJetSupport(Part):
             path = path.line(-10.0, 0.0)
         path = path.line(-10.0, r + f)
         if f > 0.0:
-            path = path.line(ROD_X, r + f).arc(ROD_X - f, r, centre=(ROD_X - f, r + f), turn="right")
-            path = path.line(collar_x + f, r).arc(collar_x, r + f, centre=(collar_x + f, r + f), turn="right")
+            path = path.line(ROD_X, r + f).arc(ROD_X - f, r, center=(ROD_X - f, r + f), turn="right")
+            path = path.line(collar_x + f, r).arc(collar_x, r + f, center=(collar_x + f, r + f), turn="right")
         else:
             path = path.line(collar_x, r)
         path = path.line(collar_x, COLLAR_RADIUS).line(self._clamp_x, COLLAR_RADIUS)
@@ -160,17 +160,17 @@ class ForearmJetSupport(Part):
     def _flange(self) -> Shape:
         radius, half, foot = FLANGE_RADIUS, FLANGE_HALF_WIDTH, FLANGE_FOOT
         side, low = math.sqrt(radius**2 - half**2), math.sqrt(radius**2 - foot**2)
-        centre = (0.0, 0.0)
+        center = (0.0, 0.0)
         outline = (
-            Path(foot, -low).arc(-side, -half, centre=centre).line(side, -half).arc(side, half, centre=centre)
-            .line(-side, half).arc(foot, low, centre=centre).close()
+            Path(foot, -low).arc(-side, -half, center=center).line(side, -half).arc(side, half, center=center)
+            .line(-side, half).arc(foot, low, center=center).close()
         )  # fmt: skip
         plate = Extrusion(outline, ROD_X, MOUNT_X, ACROSS, end_face="mount")
         edge_radius = 2.0  # both long edges, towards the mounting face
         corner = (
             Path(half, MOUNT_X - edge_radius).line(half + 1.0, MOUNT_X - edge_radius).line(half + 1.0, MOUNT_X + 1.0)
             .line(half - edge_radius, MOUNT_X + 1.0).line(half - edge_radius, MOUNT_X)
-            .arc(half, MOUNT_X - edge_radius, centre=(half - edge_radius, MOUNT_X - edge_radius), turn="right").close()
+            .arc(half, MOUNT_X - edge_radius, center=(half - edge_radius, MOUNT_X - edge_radius), turn="right").close()
         )  # fmt: skip
         rounding = Extrusion(corner, -30.0, 30.0, Frame(AXIS, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)))
         return plate - rounding - rounding.mirrored("z")
@@ -180,15 +180,15 @@ class ForearmJetSupport(Part):
         hub, ring, drop = HUB_RADIUS + BLEND_RADIUS, RING_RADIUS + BLEND_RADIUS, self.offset
         z = (ring**2 - hub**2 - drop**2) / (2.0 * drop)
         blend = np.array([math.sqrt(hub**2 - z**2), z])
-        centre = np.array([0.0, -drop])
+        center = np.array([0.0, -drop])
         on_hub = HUB_RADIUS / hub * blend
-        on_ring = centre + RING_RADIUS / ring * (blend - centre)
+        on_ring = center + RING_RADIUS / ring * (blend - center)
         (hy, hz), (ry, rz), (by, bz) = on_hub.tolist(), on_ring.tolist(), blend.tolist()
         outline = (
-            Path(hy, hz).arc(-hy, hz, centre=(0.0, 0.0))
-            .arc(-ry, rz, centre=(-by, bz), turn="right")
-            .arc(ry, rz, centre=(0.0, -drop))
-            .arc(hy, hz, centre=(by, bz), turn="right").close()
+            Path(hy, hz).arc(-hy, hz, center=(0.0, 0.0))
+            .arc(-ry, rz, center=(-by, bz), turn="right")
+            .arc(ry, rz, center=(0.0, -drop))
+            .arc(hy, hz, center=(by, bz), turn="right").close()
         )  # fmt: skip
         return outline.without(circle(0.0, -drop, BORE_RADIUS))
 
@@ -196,36 +196,36 @@ class ForearmJetSupport(Part):
         """turbine: at the nozzle's exit of the turbine clamped in the ring, z along the jet, x parallel to part z."""
         part_T_turbine = np.eye(4)
         part_T_turbine[:3, :3] = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
-        part_T_turbine[:3, 3] = np.array([self._seat_x - NOZZLE_REACH, AXIS[1], -self.offset]) * MILLIMETRE
+        part_T_turbine[:3, 3] = np.array([self._seat_x - NOZZLE_REACH, AXIS[1], -self.offset]) * MILLIMETER
         return {"turbine": part_T_turbine}
 
-    # What a load case needs to know, in metres and part axes.
+    # What a load case needs to know, in meters and part axes.
 
     @property
     def seat_area(self) -> float:
         """Area of the distal face around the spigot [m²], exact."""
-        return (self.clamp_outline().area - math.pi * SPIGOT_RADIUS**2) * MILLIMETRE**2
+        return (self.clamp_outline().area - math.pi * SPIGOT_RADIUS**2) * MILLIMETER**2
 
     @property
     def seat_centroid(self) -> Vector:
         """(3,) centroid of the distal face around the spigot [m], exact."""
         outline = self.clamp_outline()
-        area = outline.area - math.pi * SPIGOT_RADIUS**2  # the spigot is centred on the axis: no first moment
+        area = outline.area - math.pi * SPIGOT_RADIUS**2  # the spigot is centered on the axis: no first moment
         y, z = (moment / area for moment in outline.first_moments)
-        return np.array([self._seat_x, AXIS[1] + y, z]) * MILLIMETRE
+        return np.array([self._seat_x, AXIS[1] + y, z]) * MILLIMETER
 
     @property
     def turbine_axis(self) -> Vector:
         """(3,) point of the turbine's axis, which is parallel to x, in the plane of the distal face [m]."""
-        return np.array([self._seat_x, AXIS[1], -self.offset]) * MILLIMETRE
+        return np.array([self._seat_x, AXIS[1], -self.offset]) * MILLIMETER
 
     @property
     def rod_ends(self) -> tuple[Vector, Vector]:
         """Points of the rod's axis at the flange and at the collar [m]; the fillets lie between them."""
         start, end = ([x, AXIS[1], AXIS[2]] for x in (ROD_X, ROD_X - self.length))
-        return np.array(start) * MILLIMETRE, np.array(end) * MILLIMETRE
+        return np.array(start) * MILLIMETER, np.array(end) * MILLIMETER
 
-    rod_radius = ROD_RADIUS * MILLIMETRE
+    rod_radius = ROD_RADIUS * MILLIMETER
 
     def stress_case(self, settings: StressSettings) -> _core.PartCase:
         """The whole part, finest in the fillets at the rod's ends on the side of the ring, where the stress is largest.
@@ -251,19 +251,19 @@ class ForearmJetSupport(Part):
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
         """Arcs inside the fillets at both ends of the rod, finest on the side of the ring, and the rod itself."""
-        fine = settings.accuracy != "optimisation"
+        fine = settings.accuracy != "optimization"
         base, fillet, growth, rod = (8.0, 0.35, 0.35, 4.0) if fine else (12.0, 0.5, 0.5, 5.0)
         start, end = self.rod_ends
         turn = np.radians(np.linspace(-20.0, 20.0, 9))
-        inside = np.array([0.8 * MILLIMETRE, 0.0, 0.0])
+        inside = np.array([0.8 * MILLIMETER, 0.0, 0.0])
         sources = []
         for side, edge in ((-1.0, fillet), (1.0, 2.0 * fillet)):
-            arc = (self.rod_radius + 0.4 * MILLIMETRE) * np.column_stack(
+            arc = (self.rod_radius + 0.4 * MILLIMETER) * np.column_stack(
                 [0.0 * turn, np.sin(turn), side * np.cos(turn)]
             )
             sources += [
-                fem.SizeSource(centre + arc, edge * MILLIMETRE, growth, 0.6 * MILLIMETRE)
-                for centre in (start - inside, end + inside)
+                fem.SizeSource(center + arc, edge * MILLIMETER, growth, 0.6 * MILLIMETER)
+                for center in (start - inside, end + inside)
             ]
-        sources.append(fem.SizeSource(np.array([start, end]), rod * MILLIMETRE, growth, self.rod_radius))
-        return fem.SizeField(base * MILLIMETRE, sources)
+        sources.append(fem.SizeSource(np.array([start, end]), rod * MILLIMETER, growth, self.rod_radius))
+        return fem.SizeField(base * MILLIMETER, sources)
