@@ -20,7 +20,7 @@ from codesign.search.progress import ProgressBar
 
 
 def slurm_cluster(given: argparse.Namespace) -> Any:
-    """Slurm jobs that hold one Dask worker with a thread a core each; every thread runs one evaluation at a time."""
+    """Slurm jobs that hold one Dask worker with one thread per core; every thread runs one evaluation at a time."""
     from dask_jobqueue import SLURMCluster
 
     return SLURMCluster(

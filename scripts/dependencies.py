@@ -1,4 +1,4 @@
-"""Prints the packages that pyproject.toml asks for, one a line, with those of the extras named as arguments."""
+"""Prints the packages that pyproject.toml asks for, one per line, with those of the extras named as arguments."""
 
 import sys
 import tomllib

@@ -1,4 +1,4 @@
-"""Regenerates python/codesign/_core.pyi from the compiled module; with --check only says whether it is up to date."""
+"""Regenerates python/codesign/_core/*.pyi from the compiled module; with --check only says whether it is up to date."""
 
 import subprocess
 import sys

@@ -6,7 +6,7 @@
    degenerate vertices), each solved cold and warm-started from another problem's working set: the KKT residual is
    recomputed here.
 2. The momentum QPs of the standard study's flight in their order, n = 27. Native: time of the solver inside the
-   flight loop, from the flight's profile. From Python: CPU time a call, warm-started, against quadprog and ProxQP
+   flight loop, from the flight's profile. From Python: CPU time per call, warm-started, against quadprog and ProxQP
    (warm-started with its own update()). quadprog takes bounds as rows of constraints; its matrices and right-hand
    sides are prepared before the clock starts. All Python calls pay for the call; for quadprog and for us that share is
    measured with a problem of one variable and printed.

@@ -37,10 +37,10 @@ def main() -> None:
         best = min(best, time.process_time() - start)
         phases = {name: min(least, getattr(log.profile, name)) for name, least in phases.items()}
     print(f"flight of {settings.duration:g} s, {log.samples} samples: {best:.3f} s of CPU, best of {repeats}")
-    print(f"{best / log.samples * 1e6:.1f} us a step, {settings.duration / best:.0f} x real time; target {TARGET} s")
+    print(f"{best / log.samples * 1e6:.1f} us per step, {settings.duration / best:.0f} x real time; target {TARGET} s")
     for name, seconds in phases.items():
-        print(f"{name:>12} {seconds / log.samples * 1e6:6.2f} us a step {seconds / sum(phases.values()):6.1%}")
-    print(f"{log.total_qp_iterations / log.samples - 1:.2f} factorizations a momentum QP")
+        print(f"{name:>12} {seconds / log.samples * 1e6:6.2f} us per step {seconds / sum(phases.values()):6.1%}")
+    print(f"{log.total_qp_iterations / log.samples - 1:.2f} factorizations per momentum QP")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
   python benchmarks/optimizer/paper_size.py --workers 2            (25 x 40, seed 1, shipped study)
 
-The paper's chain took 216 s a design: 60 h for 1000. Needs a fresh --out folder.
+The paper's chain took 216 s per design: 60 h for 1000. Needs a fresh --out folder.
 """
 
 from __future__ import annotations

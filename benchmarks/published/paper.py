@@ -129,8 +129,8 @@ def search_section(run: Run, data: ReportData) -> str:
         ("designs evaluated", "1000 planned, 401 in the published table", f"{count} ({counts})"),
         (
             "time",
-            f"{PAPER_SECONDS:.0f} s a design, 60 h",
-            f"{mean:.2f} s a design and worker, {run.seconds / 60:.1f} min",
+            f"{PAPER_SECONDS:.0f} s per design, 60 h",
+            f"{mean:.2f} s per design and worker, {run.seconds / 60:.1f} min",
         ),
         ("programs", "CAD, FEM, simulation and optimization packages under license", "this one"),
     ]

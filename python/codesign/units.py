@@ -4,5 +4,4 @@ import math
 
 MILLIMETER = 1e-3  # m
 DEGREE = math.pi / 180.0  # rad
-GRAM_SQUARE_MILLIMETER = 1e-9  # kg m²
 MEGA, GIGA = 1e6, 1e9

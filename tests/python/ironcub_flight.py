@@ -1,4 +1,4 @@
-"""Flight settings of the iRonCub study, every number from the flight specification; for tests and benchmarks."""
+"""Flight settings of the iRonCub study, in numbers, independent of its study.toml; for tests and benchmarks."""
 
 import numpy as np
 

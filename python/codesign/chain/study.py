@@ -40,7 +40,7 @@ class Study(StudyData):
         return chain.evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
 
     def confirm(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Confirmation]:
-        """Parts of a design by name, as analyzed and with full geometry on a fine mesh (some seconds a part)."""
+        """Parts of a design by name, as analyzed and with full geometry on a fine mesh (some seconds per part)."""
         return chain.confirm_parts(self, self.space.design(theta))
 
 

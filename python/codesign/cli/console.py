@@ -217,7 +217,7 @@ def _describe_elements(document: dict[str, Any]) -> str:
 def _describe_facets(facets: dict[str, Any]) -> str:
     if facets["reason"]:
         return f"none: {facets['reason']}"
-    left = f", {facets['left']} left lest they fold" if facets["left"] else ""
+    left = f", {facets['left']} left flat to avoid folding" if facets["left"] else ""
     distance, volume = f"{1e3 * facets['max_distance']:.2g} mm", f"{facets['volume_change']:+.2%}"
     return f"{facets['facets']} by up to {distance}, volume {volume}{left}"
 

@@ -95,7 +95,7 @@ class Order:
         return json.dumps(document, indent=1)
 
     def bill_of_materials(self) -> str:
-        """CSV with one line a part: quantity, material, masses [kg], files."""
+        """CSV with one line per part: quantity, material, masses [kg], files."""
         rows = [self._item(item, part) for item, part in enumerate(distinct_parts(self.components), start=1)]
         table = io.StringIO()
         writer = csv.DictWriter(table, rows[0] if rows else ["item"], lineterminator="\n")

@@ -26,7 +26,7 @@ RESAMPLES = 200  # of the bootstrap behind the confidence intervals
 
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """Sobol' indices of one output, a value a design variable, in order.
+    """Sobol' indices of one output, one value per design variable, in order.
 
     first: share of the output's variance that the variable explains alone. total: with all its interactions; near 0
     means that the variable may be fixed. Each with the half-width of its 95 % interval. None if the output is constant.

@@ -1,6 +1,6 @@
 """The part language: an immutable expression of primitives, booleans and motions, in mm.
 
-The same expression is evaluated as a triangulated solid (`solid.py`, manifold3d) and as an exact B-rep (`step.py`,
+The same expression is evaluated as a triangulated solid (`solid.py`, manifold3d) and as an exact B-rep (`brep.py`,
 OpenCASCADE). Faces get their names from the primitive that makes them and keep them through booleans and motions.
 Solids that are united must overlap, or share a plane written with the very same number.
 """

@@ -34,12 +34,6 @@ class Solid:
         present = [self.face_names[k] for k in np.unique(self.face)]
         return tuple(dict.fromkeys(name for name in present if name))
 
-    def triangles_of(self, name: str) -> Indices:
-        """Triangles (k, 3) of all faces called `name`."""
-        wanted = np.array([face_name == name for face_name in self.face_names])
-        chosen: Indices = self.triangles[wanted[self.face]]
-        return chosen
-
     def __post_init__(self) -> None:
         for array in (self.points, self.triangles, self.face):  # meshes are shared
             array.flags.writeable = False

@@ -263,11 +263,6 @@ class Confirmation:
     analyzed: dict[str, Any]
     confirmed: dict[str, Any]
 
-    @property
-    def deviation(self) -> float:
-        """Of the analyzed safety factor from the confirmed one, relative."""
-        return float(self.analyzed["safety_factor"] / self.confirmed["safety_factor"] - 1.0)
-
 
 def confirm(part: Part, settings: StressSettings) -> Confirmation:
     """Analyses a part with the given settings, and its full geometry on a fine mesh until the tolerance is reached.

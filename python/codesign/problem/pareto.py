@@ -31,13 +31,6 @@ def non_dominated(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     return keep
 
 
-def pareto_front(evaluations: Sequence[Evaluation], names: Sequence[str]) -> list[Evaluation]:
-    """The feasible evaluations that no other dominates, in order."""
-    feasible = [e for e in evaluations if e.status == "feasible"]
-    keep = non_dominated(objective_rows(feasible, names))
-    return [e for e, kept in zip(feasible, keep, strict=True) if kept]
-
-
 class Hypervolume:
     """Share of objective space that a set of designs dominates, in a fixed box.
 

@@ -1,6 +1,6 @@
 """What is too heavy for the store and kept for a handful of designs: stress on the parts' surfaces, flight histories.
 
-One compressed file a design, beside the run: `details/<values>.npz`.
+One compressed file per design, beside the run: `details/<values>.npz`.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ class ProgressBar:
         self._display.stop()
 
     def __call__(self, progress: Progress) -> None:
-        """Shows the state, a few times a second at most."""
+        """Shows the state, at most a few times per second."""
         self._last = progress
         now = time.monotonic()
         if now - self._shown >= self._interval or progress.done == progress.total:

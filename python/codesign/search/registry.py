@@ -38,7 +38,8 @@ class SearchKind:
     """What a search is to the driver.
 
     make: builds it for a design space and the keys of the minimized numbers. learns: what it asks for depends on what
-    it was told, so it is asked a generation at a time. options: a dataclass of its own settings, all with defaults.
+    it was told, so it is asked for one generation at a time. options: a dataclass of its own settings, all with
+    defaults.
     """
 
     make: Callable[[DesignSpace, Sequence[str], Settings, Any], Search]

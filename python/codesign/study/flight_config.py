@@ -17,7 +17,7 @@ class InitialStateConfig(Section, frozen=True, kw_only=True):
 
 
 class JointGroupConfig(Section, frozen=True, kw_only=True):
-    """Joints that share controller settings; one value of each list a joint."""
+    """Joints that share controller settings; each list has one value per joint."""
 
     name: Name
     joints: list[str]
@@ -48,7 +48,7 @@ class JetsConfig(Section, frozen=True, kw_only=True):
 
 
 class CommandSpeedsConfig(Section, frozen=True, kw_only=True):
-    """How fast a command of sign 1 moves the reference."""
+    """Rates of the reference for a full-scale command."""
 
     forward_m_s: Positive
     vertical_m_s: Positive
@@ -105,7 +105,7 @@ class LimitsConfig(Section, frozen=True, kw_only=True):
 
 
 class FailureConfig(Section, frozen=True, kw_only=True):
-    """A flight beyond these is lost."""
+    """Limits; exceeding one ends the flight as lost."""
 
     com_error_m: Positive
     attitude_error_deg: Positive
@@ -113,7 +113,7 @@ class FailureConfig(Section, frozen=True, kw_only=True):
 
 
 class GroundConfig(Section, frozen=True, kw_only=True):
-    """Points of the robot whose height over the ground is watched."""
+    """Points of the robot monitored for ground contact."""
 
     height_m: float = 0.0
     frames: list[str] = []

@@ -28,7 +28,7 @@ def tensor(xx, yy, zz, xy=0.0, xz=0.0, yz=0.0):
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
-# Original bracket (15°, 42 mm) in its part frame: spec of the two parts, reference values of the exact solid
+# Original bracket (15°, 42 mm) in its part frame: values of the exact solid
 BRACKET = Properties(0.227882, np.array([0.040185, 0.0, 0.013639]), 1e-6 * tensor(67.701, 218.820, 262.671, xz=-37.170))
 # Forearm support, left: Offset 88, Length 50
 FOREARM = Properties(

@@ -25,7 +25,7 @@ def chosen(data: FigureData) -> Any:
 
 
 def draw_chosen(run: ReportData, shown: dict[str, Evaluation]) -> Any:
-    """Designs by role on one line a parameter and one an objective; each line says where it starts and ends."""
+    """Designs by role, one line per parameter and objective; each line says where it starts and ends."""
     from matplotlib.figure import Figure
 
     rows = np.array([_row(run, evaluation) for evaluation in shown.values()])

@@ -58,6 +58,6 @@ def _strip(axes: Any, y: int, disturbed: Array, calm: Array, spread: np.random.G
     across = y + spread.uniform(-0.18, 0.18, len(disturbed))
     label = {"label": "disturbed flight"} if y == 0 else {}
     axes.scatter(disturbed, across, 5, style.BLUE, linewidths=0, alpha=0.6, **label)
-    label = {"label": "calm flight, one a trajectory"} if y == 0 else {}
+    label = {"label": "calm flight, one per trajectory"} if y == 0 else {}
     place = np.full(len(calm), float(y))
     axes.scatter(calm, place, 18, style.INK, "D", edgecolors="white", linewidths=0.5, **label)

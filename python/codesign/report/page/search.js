@@ -9,7 +9,7 @@ function drawProgress() {
   }], layout({xaxis: axis('Designs evaluated', {rangemode: 'tozero'}), yaxis: axis('Volume, of this run’s end', {tickformat: '.0%', range: [0, 1.04]}), hovermode: 'x'}), settings);
 }
 
-/** Change of each objective from the original: disturbed flights as dots, calm ones as diamonds, a column a design. */
+/** Change of each objective from the original: disturbed flights as dots, calm ones as diamonds, one column per design. */
 function drawValidation() {
   const plot = element('validation-chart'), strips = report.validation;
   if (!plot || !strips) return;
