@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from operator import attrgetter
 from typing import Any
 
 from codesign import dynamics as dyn
 from codesign.problem.quantities import FAMILY
 from codesign.study.config import StudyConfig
 
+# Numbers of a flight in its document, SI units, None where they are not finite: name -> function of the log with its
+# histories. An objective or a constraint names them by path, `flight.max_torque`.
+FLIGHT_NUMBERS: dict[str, Callable[[dyn.FlightLog], float]] = {
+    name: attrgetter(name)
+    for name in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust", "max_torque", "min_clearance")
+}
 SHORTEST_MISS = 1e-6  # of a flight that was lost in its last sample
 
 
@@ -29,8 +37,8 @@ def flight_document(trajectory: str, log: dyn.FlightLog, wanted: float, seconds:
     seconds: processor time.
     """
     document: dict[str, Any] = {"trajectory": trajectory, "duration": (log.samples - 1) * log.step}
-    for name in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust", "max_torque", "min_clearance"):
-        value = getattr(log, name)
+    for name, number in FLIGHT_NUMBERS.items():
+        value = number(log)
         document[name] = value if math.isfinite(value) else None
     document["ground_touched"] = bool(log.ground_touched)
     document["qp_failures"] = log.qp_failures

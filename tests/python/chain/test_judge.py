@@ -1,8 +1,10 @@
 """The judge: any number of an evaluation as objective or constraint."""
 
 import msgspec
+import numpy as np
 import pytest
 
+from codesign.chain import documents
 from codesign.chain.judge import judge, limits
 from codesign.chain.study import load_study
 from codesign.errors import StudyError
@@ -121,3 +123,16 @@ def test_a_lost_flight_is_infeasible_by_the_share_it_missed(config):
     assert verdict.reason == "flight lost at 5.00 s: too far"
     document = DOCUMENT | {"flight": FLIGHT | {"qp_failures": 3}}  # steps without a solution alone lose no flight
     assert judge(asked(config), document, {}).status == "feasible"
+
+
+def test_a_new_number_of_the_flight_takes_one_entry(monkeypatch, tmp_path):
+    """The example of CONTRIBUTING.md."""
+    monkeypatch.setitem(
+        documents.FLIGHT_NUMBERS, "torque_rms", lambda log: float(np.sqrt(np.mean(np.square(log.torque))))
+    )
+    new_study(tmp_path / "study")
+    file = tmp_path / "study" / "study.toml"
+    text = file.read_text().replace("duration_s = 20.0", "duration_s = 1.6")
+    file.write_text(text.replace(MINIMIZED, 'minimize = ["flight.torque_rms", "thrust"]'))
+    evaluation = load_study(file).evaluate({"reach": 200, "height": 30})
+    assert evaluation.objectives["flight.torque_rms"] == evaluation.flight["torque_rms"] > 0.0
