@@ -14,7 +14,7 @@ import numpy as np
 from codesign import fem
 from codesign.cli.stress_file import load_file, repair_document, unit_hints
 from codesign.cli.stress_mesh import literal_facets, mesh_places
-from codesign.cli.stress_options import StressInputError, parse_load, parse_selection
+from codesign.cli.stress_options import StressInputError, parse_acceleration, parse_load, parse_support
 from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
 from codesign.errors import ModelError
 from codesign.parts.load_case import strength_document
@@ -49,12 +49,14 @@ def stress_document(
     smooth: bool = False,
     repair: bool = False,
     simplify: bool = True,
+    acceleration: str | None = None,
 ) -> dict[str, Any]:
     """Meshes, solves and gives the JSON document of `codesign stress` (docs/fem.md); SI units.
 
     Args:
         path: STL file. scale: meters per unit of the file, also of the selections' coordinates.
-        fix: selections held in all directions. load: texts `SEL: fx fy fz`.
+        fix: selections, held in all directions, or `SEL: xz` in two. load: texts `SEL: fx fy fz`, `SEL: pressure p`,
+            `SEL: traction tx ty tz`. acceleration: `ax ay az` [m/s²] of the whole part, as gravity.
         edge_length_mm: of the elements; from the local wall if absent. vtu, png: the stress field, a picture of it.
         exclusion_mm: the peak stress is read farther than this from borders of clamps and from sharp pocket edges that
             border a load; in proportion to the local feature if absent.
@@ -63,19 +65,25 @@ def stress_document(
 
     Raises: MeshError, SolverError, StressInputError.
     """
-    if not fix or not load:
-        raise StressInputError("--fix and --load: at least one of each is needed")
+    if not fix or not (load or acceleration):
+        raise StressInputError("--fix and --load (or --acceleration): at least one of each is needed")
+    if acceleration and material.density <= 0.0:
+        raise StressInputError("--acceleration: the material needs a density: E_GPa,nu,yield_MPa,density_kg_m3")
     for name, value in (("--edge-length", edge_length_mm), ("--exclusion", exclusion_mm), ("--scale", scale)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise StressInputError(f"{name}: a positive number is needed")
-    asked = [PlacedText(text.strip(), parse_selection(text, scale)) for text in fix]
+    asked = []
+    for text in fix:
+        place, axes = parse_support(text, scale)
+        asked.append(PlacedText(text.strip(), place, axes=axes))
     for text in load:
-        place, force = parse_load(text, scale)
-        asked.append(PlacedText(text.rpartition(":")[0].strip(), place, force))
+        place, what = parse_load(text, scale)
+        asked.append(PlacedText(text.rpartition(":")[0].strip(), place, what))
     edge_length = None if edge_length_mm is None else edge_length_mm * MILLIMETER
     exclusion = None if exclusion_mm is None else exclusion_mm * MILLIMETER
     surface, repaired = load_file(path, scale, repair)
-    solved = _solve(surface, asked, material, edge_length, exclusion, smooth, simplify)
+    body = None if acceleration is None else parse_acceleration(acceleration)
+    solved = _solve(surface, asked, material, edge_length, exclusion, smooth, simplify, body)
     _write_files(path, material, solved, vtu, png)
     document = _document(path, material, solved, smooth)
     document["repair"] = repair_document(repaired)
@@ -91,13 +99,16 @@ def _solve(
     exclusion: float | None,
     smooth: bool,
     simplify: bool,
+    acceleration: tuple[float, ...] | None,
 ) -> Solved:
     start = time.perf_counter()
     size = fem.default_size(surface) if edge_length is None else fem.SizeField(edge_length)
     mesh, named, smoothing = mesh_places(surface, [placed.place for placed in asked], size, smooth, simplify)
     places = caught_places(asked, named, mesh, size.base)
-    supports = [fem.Support(place.selection) for place in places if place.asked.force is None]
-    loads = [fem.Force(p.selection, p.asked.force) for p in places if p.asked.force is not None]
+    supports = [fem.Support(place.selection, place.asked.axes) for place in places if place.asked.load is None]
+    loads: list[fem.Load] = [p.asked.load.on(p.selection) for p in places if p.asked.load is not None]
+    if acceleration is not None:
+        loads.append(fem.Acceleration(acceleration))
     meshed = time.perf_counter()
     try:
         result = fem.solve_static(mesh, material, supports, loads, exclusion_distance=exclusion)
@@ -130,7 +141,6 @@ def _write_files(path: Path, material: fem.Material, solved: Solved, vtu: Path |
 def _document(path: Path, material: fem.Material, solved: Solved, smooth: bool) -> dict[str, Any]:
     result, mesh = solved.result, solved.mesh
     quality, report = mesh.quality, mesh.report
-    forces = [place.asked.force for place in solved.places if place.asked.force is not None]
     strength = strength_document(result)
     return {
         "file": str(path),
@@ -139,7 +149,7 @@ def _document(path: Path, material: fem.Material, solved: Solved, smooth: bool) 
         "safety_factor_reason": None if strength["safety_factor"] is not None else "the loads do not stress the part",
         "max_displacement": result.max_displacement,
         "work": result.work,
-        "applied_force": [float(x) for x in np.array(forces).sum(axis=0)],
+        "applied_force": sum((place.force for place in solved.places), np.zeros(3)).tolist(),
         "reaction_force": [float(x) for x in np.asarray(result.reactions).sum(axis=0)],
         "places": [place.to_dict() for place in solved.places],
         "warnings": _warnings(solved),

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import Literal, cast
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from codesign import fem
 from codesign.errors import CodesignError, ModelError
@@ -52,18 +55,72 @@ def parse_selection(text: str, scale: float) -> Place:
     )
 
 
-def parse_load(text: str, scale: float) -> tuple[Place, tuple[float, ...]]:
-    """`SEL: fx fy fz`, the total force in newton, spread over the selection's area.
+LoadKind = Literal["force", "traction", "pressure"]
+
+
+@dataclass(frozen=True)
+class AskedLoad:
+    """A load on a place as it was asked for, SI units: a total force, a traction, or a pressure (one value)."""
+
+    kind: LoadKind
+    values: tuple[float, ...]
+
+    def on(self, where: fem.Selection) -> fem.Load:
+        """The load on a selection."""
+        if self.kind == "pressure":
+            return fem.Pressure(where, self.values[0])
+        return fem.Force(where, self.values) if self.kind == "force" else fem.Traction(where, self.values)
+
+    def resultant(self, area: float, normal: ArrayLike) -> NDArray[np.float64]:
+        """(3,) total force [N] on a place of an area [m²] and a mean unit outward normal (3,), shorter if it bends."""
+        values = np.asarray(self.values, dtype=float)
+        if self.kind == "pressure":
+            return np.asarray(-values[0] * area * np.asarray(normal, dtype=float))
+        return values if self.kind == "force" else values * area
+
+    def words(self) -> str:
+        """For notes in files."""
+        unit, factor = ("N", 1.0) if self.kind == "force" else ("MPa", MEGA)
+        numbers = ", ".join(f"{value / factor:g}" for value in self.values)
+        return f"{self.kind} {numbers if len(self.values) == 1 else f'({numbers})'} {unit}"
+
+
+def parse_load(text: str, scale: float) -> tuple[Place, AskedLoad]:
+    """A load spread over a selection.
+
+    `SEL: fx fy fz` (total force in N), `SEL: traction tx ty tz` (MPa) or `SEL: pressure p` (MPa, against the normal).
 
     Raises: StressInputError.
     """
-    where, colon, force = text.rpartition(":")
+    where, colon, load = text.rpartition(":")
     if not colon:
-        raise StressInputError(f"load {text!r}: expected 'SELECTION: fx fy fz'")
-    values = _numbers(",".join(force.replace(",", " ").split()), 3, text)
+        raise StressInputError(f"load {text!r}: expected 'SELECTION: fx fy fz', or pressure p, or traction tx ty tz")
+    words = load.replace(",", " ").split()
+    kind = words.pop(0) if words and words[0] in ("force", "traction", "pressure") else "force"
+    values = _numbers(",".join(words), 1 if kind == "pressure" else 3, text)
     if not any(values):
-        raise StressInputError(f"load {text!r}: the force is zero")
-    return parse_selection(where, scale), values
+        raise StressInputError(f"load {text!r}: the {kind} is zero")
+    factor = 1.0 if kind == "force" else MEGA
+    return parse_selection(where, scale), AskedLoad(cast("LoadKind", kind), tuple(factor * value for value in values))
+
+
+def parse_support(text: str, scale: float) -> tuple[Place, str]:
+    """A place that is held, and the directions: `SEL` holds all three, `SEL: xz` two (a roller, a plane of symmetry).
+
+    Raises: StressInputError.
+    """
+    where, _, axes = (part.strip() for part in text.rpartition(":"))
+    if ":" in where and axes and set(axes) <= set("xyz"):
+        return parse_selection(where, scale), axes
+    return parse_selection(text, scale), "xyz"
+
+
+def parse_acceleration(text: str) -> tuple[float, ...]:
+    """`ax ay az` in m/s². Raises: StressInputError."""
+    values = _numbers(",".join(text.replace(",", " ").split()), 3, text)
+    if not any(values):
+        raise StressInputError(f"acceleration {text!r}: is zero")
+    return values
 
 
 def find_material(text: str) -> fem.Material:

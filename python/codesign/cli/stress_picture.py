@@ -40,7 +40,7 @@ def write_stress_picture(
         axes = figure.subplots()
         show_picture(axes, render(bodies, view, 660, 440), view)
         for place in places:
-            if place.asked.force is not None:
+            if place.asked.load is not None:
                 _draw_arrow(axes, view, place, float(np.ptp(mesh.nodes, axis=0).max()))
         factor = result.safety_factor
         axes.set_title(f"{name}: safety factor {factor:.3g}" if np.isfinite(factor) else f"{name}: not stressed")
@@ -58,7 +58,7 @@ def _bodies(mesh: fem.TetMesh, result: fem.StaticResult, places: Sequence[Caught
     field = stress_field(mesh, result)
     held = np.zeros(len(mesh.boundary), dtype=bool)
     for place in places:
-        if place.asked.force is None:
+        if place.asked.load is None:
             held[_core.selected_triangles(mesh, resolve(mesh, place.selection))] = True
     drawn = np.tile(held, INNER)
     tint = stress_tint(field.von_mises, result.peak_stress)
@@ -79,8 +79,10 @@ def _view(bodies: Sequence[Body], places: Sequence[CaughtPlace]) -> View:
 
 def _draw_arrow(axes: Any, view: View, place: CaughtPlace, size: float) -> None:
     """An arrow along the force: it ends on the place if it presses, and starts there if it pulls."""
-    force = np.asarray(place.asked.force, dtype=float)
+    force = place.force
     magnitude = float(np.linalg.norm(force))
+    if magnitude == 0.0:
+        return  # a pressure all around
     along = force / magnitude
     where = np.array(place.found.centroid)
     pulls = float(along @ np.array(place.found.normal)) > 0.0

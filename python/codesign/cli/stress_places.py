@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codesign import fem
-from codesign.cli.stress_options import StressInputError
+from codesign.cli.stress_options import AskedLoad, StressInputError
 from codesign.fem.places import Caught, caught
 from codesign.fem.selections import Box, Facing, Labeled, Place
 from codesign.units import MILLIMETER
@@ -17,16 +18,17 @@ from codesign.units import MILLIMETER
 
 @dataclass(frozen=True)
 class PlacedText:
-    """A place as it was asked for: `text` of the option, and the force [N] of a load; None for a clamp."""
+    """A place as it was asked for: `text` of the option, the load on it, None for a clamp, and what a clamp holds."""
 
     text: str
     place: Place
-    force: tuple[float, ...] | None = None
+    load: AskedLoad | None = None
+    axes: str = "xyz"
 
     @property
     def kind(self) -> str:
         """Of option: clamp or load."""
-        return "clamp" if self.force is None else "load"
+        return "clamp" if self.load is None else "load"
 
 
 @dataclass(frozen=True)
@@ -39,14 +41,21 @@ class CaughtPlace:
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON, SI units."""
-        force = {} if self.asked.force is None else {"force": list(self.asked.force)}
-        return {"kind": self.asked.kind, "selection": self.asked.text, **self.found.to_dict(), **force}
+        load: dict[str, Any] = {"axes": self.asked.axes} if self.asked.load is None else {"force": self.force.tolist()}
+        return {"kind": self.asked.kind, "selection": self.asked.text, **self.found.to_dict(), **load}
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        """(3,) total force [N] of the load; zero for a clamp."""
+        if self.asked.load is None:
+            return np.zeros(3)
+        return self.asked.load.resultant(self.found.area, self.found.normal)
 
     def words(self) -> str:
         """Place, kind and force, for notes in files: coordinates as in the option."""
-        if self.asked.force is None:
+        if self.asked.load is None:
             return f"held: {self.asked.text}"
-        return f"load: {self.asked.text}, ({', '.join(f'{x:g}' for x in self.asked.force)}) N"
+        return f"load: {self.asked.text}, {self.asked.load.words()}"
 
     def warnings(self) -> list[str]:
         """What is doubtful, one text each."""

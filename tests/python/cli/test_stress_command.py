@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from codesign.cli.stress import stress_document
-from codesign.cli.stress_options import StressInputError, find_material, parse_load
+from codesign.cli.stress_options import AskedLoad, StressInputError, find_material, parse_load
 from codesign.errors import MeshError
 from codesign.parts.materials import named_material
 from vtu_files import read_vtu
@@ -105,7 +105,7 @@ def test_fields_and_picture_are_written(bar, tmp_path):
 
 
 def test_loads_accept_commas_and_spaces():
-    assert parse_load("near:1,2,3: 1, 2 -3", 1e-3)[1] == (1.0, 2.0, -3.0)
+    assert parse_load("near:1,2,3: 1, 2 -3", 1e-3)[1] == AskedLoad("force", (1.0, 2.0, -3.0))
 
 
 def test_bad_files_are_mesh_errors(tmp_path):

@@ -29,8 +29,14 @@ RepairOption = Annotated[
 )
 def stress(
     part: Annotated[Path, typer.Argument(metavar="PART", help="Closed surface: STL, binary or ASCII, or a STEP file.")],
-    fix: Annotated[list[str], typer.Option(metavar="SEL", help="Held in all directions; may be repeated.")],
-    load: Annotated[list[str], typer.Option(metavar="'SEL: FX FY FZ'", help="Total force in N; may be repeated.")],
+    fix: Annotated[list[str], typer.Option(metavar="SEL", help="Held in all directions, or 'SEL: xz' in two.")],
+    load: Annotated[
+        list[str] | None,
+        typer.Option(metavar="'SEL: LOAD'", help="Total force FX FY FZ in N; pressure P or traction TX TY TZ in MPa."),
+    ] = None,
+    acceleration: Annotated[
+        str | None, typer.Option(metavar="'AX AY AZ'", help="Of the whole part, as gravity: m/s².")
+    ] = None,
     scale: Annotated[float, typer.Option(help="Meters per unit of an STL file and of the selections.")] = 1e-3,
     material: Annotated[
         str, typer.Option(help="A name that `codesign materials` lists, or E_GPa,nu,yield_MPa[,kg/m3].")
@@ -64,7 +70,7 @@ def stress(
         scale,
         find_material(material),
         fix,
-        load,
+        load or [],
         edge_length,
         vtu,
         png,
@@ -72,6 +78,7 @@ def stress(
         smooth,
         repair,
         not no_simplify,
+        acceleration,
     )
     if as_json:
         print_json(document)
