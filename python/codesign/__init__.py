@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study, load_study
+    from codesign.problem.design_space import DesignValue
     from codesign.problem.evaluation import Evaluation
     from codesign.search.optimization import optimize, resume
 
@@ -23,7 +24,7 @@ _HOMES = {
 }
 
 
-def evaluate(theta: Mapping[str, float] | Sequence[float]) -> Evaluation:
+def evaluate(theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> Evaluation:
     """One design of the default study through the whole chain; theta by names or in variable order, study units."""
     from codesign.chain.study import load_study
 

@@ -27,7 +27,7 @@ from codesign.parts.load_case import (
     part_document,
 )
 from codesign.parts.part import Part
-from codesign.problem.design_space import Design
+from codesign.problem.design_space import Design, DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.robot.assembly import PartBody, assemble
 from codesign.robot.clearance import convex_pieces, flown_interference
@@ -126,7 +126,9 @@ def _evaluate(
     return evaluation, result
 
 
-def build_parts(study: StudyData, design: Mapping[str, float], config: StudyConfig | None = None) -> dict[str, Part]:
+def build_parts(
+    study: StudyData, design: Mapping[str, DesignValue], config: StudyConfig | None = None
+) -> dict[str, Part]:
     """Parts of a design by name."""
     config = config or study.configured(design)
     return {part.name: make_part(part, config, study.part_classes[part.name], design) for part in config.parts}
@@ -175,7 +177,7 @@ def confirm_parts(study: StudyData, design: Design) -> dict[str, Confirmation]:
     }
 
 
-def build_robot(study: StudyData, design: Mapping[str, float]) -> RobotDescription:
+def build_robot(study: StudyData, design: Mapping[str, DesignValue]) -> RobotDescription:
     """The base robot with this design's parts in it."""
     config = study.configured(design)
     parts = build_parts(study, design, config)

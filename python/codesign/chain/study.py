@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from codesign.chain import chain
 from codesign.parts.part import Part
+from codesign.problem.design_space import DesignValue
 from codesign.study.loading import load
 from codesign.study.study import StudyData
 
@@ -22,24 +23,24 @@ if TYPE_CHECKING:
 class Study(StudyData):
     """What a study defines, and the chain that evaluates its designs."""
 
-    def build_parts(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Part]:
+    def build_parts(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> dict[str, Part]:
         """Parts of a design by name."""
         return chain.build_parts(self, self.space.design(theta))
 
-    def build_robot(self, theta: Mapping[str, float] | Sequence[float]) -> str:
+    def build_robot(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> str:
         """URDF text of the robot with this design's parts."""
         return chain.build_robot(self, self.space.design(theta)).to_text()
 
     def evaluate(
         self,
-        theta: Mapping[str, float] | Sequence[float],
+        theta: Mapping[str, DesignValue] | Sequence[DesignValue],
         trajectory: str | None = None,
         cache: PartCache | None = None,
     ) -> Evaluation:
         """One design through the whole chain; `trajectory`: a name of the study, default its own."""
         return chain.evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
 
-    def confirm(self, theta: Mapping[str, float] | Sequence[float]) -> dict[str, Confirmation]:
+    def confirm(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> dict[str, Confirmation]:
         """Parts of a design by name, as analyzed and with full geometry on a fine mesh (some seconds per part)."""
         return chain.confirm_parts(self, self.space.design(theta))
 

@@ -152,8 +152,7 @@ def print_study(space: DesignSpace, objectives: Sequence[str], limited: Sequence
     """What a sound study varies, minimizes and limits."""
     table = Table("variable", "values", "number", box=None, pad_edge=False)
     for variable in space.variables:
-        low, step, high = map(value_text, (variable.minimum, variable.step, variable.maximum))
-        table.add_row(variable.name, f"{low} … {high} by {step} {variable.unit}", str(variable.levels))
+        table.add_row(variable.name, str(variable), str(variable.levels))
     out.print(table)
     out.print(f"{math.prod(space.levels):,} designs", highlight=False)
     out.print(f"minimized: {', '.join(objectives)}")

@@ -21,7 +21,7 @@ from codesign.parts.cad_export import export_parts
 from codesign.parts.component import Component
 from codesign.parts.load_case import part_case
 from codesign.parts.part import Part
-from codesign.problem.design_space import Design
+from codesign.problem.design_space import Design, DesignValue, value_text
 from codesign.report.study_words import part_words
 from codesign.robot.package import write_urdf_package
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 def export_design(
     study: Study,
-    theta: Mapping[str, float],
+    theta: Mapping[str, DesignValue],
     out: str | Path,
     *,
     chosen: str = "",
@@ -74,7 +74,7 @@ def export_design(
     return [out / file for file in sorted(files)]
 
 
-def design_of_run(run_directory: Path, selector: str) -> tuple[Study, dict[str, float], str]:
+def design_of_run(run_directory: Path, selector: str) -> tuple[Study, dict[str, DesignValue], str]:
     """The study of a run, a design of it (`recommended` or a number), and where that comes from in words.
 
     Raises: StoreError, StudyError, DesignError.
@@ -146,7 +146,7 @@ def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnaly
         "material": settings.material.name,
         "result": f"safety factor {result.safety_factor:.6g}, peak stress {result.peak_stress:.6g} Pa where "
         "counts_for_peak is 1",
-        "design": ", ".join(f"{key} = {value:g}" for key, value in order.design.items()),
+        "design": ", ".join(f"{key} = {value_text(value)}" for key, value in order.design.items()),
         "revision": order.revision,
     }
     model = StressModel.of(analysis.mesh, result)

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from codesign.errors import DesignError
+from codesign.problem.design_space import DesignValue
 
 StudyOption = Annotated[str, typer.Option("--study", "-s", help="A shipped study's name or the path of a study.toml.")]
 SetOption = Annotated[list[str], typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.")]
@@ -20,18 +21,17 @@ DEFAULT_STUDY = "ironcub"
 EXAMPLE_DESIGN = "--set angle=15 --set distance=42 --set offset=80 --set length=108"
 
 
-def parse_design(assignments: list[str]) -> dict[str, float]:
-    """Design values from NAME=VALUE texts; raises DesignError for anything else."""
-    design: dict[str, float] = {}
+def parse_design(assignments: list[str]) -> dict[str, DesignValue]:
+    """Design values from NAME=VALUE texts, numbers where they are some; raises DesignError for anything else."""
+    design: dict[str, DesignValue] = {}
     for text in assignments:
-        name, equals, value = text.partition("=")
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not value:
+            raise DesignError(f"--set {text}: expected NAME=VALUE, for example angle=15")
+        if name in design:
+            raise DesignError(f"--set {text}: {name} is given twice")
         try:
-            number = float(value)
+            design[name] = float(value)
         except ValueError:
-            number = float("nan")
-        if not equals or number != number:
-            raise DesignError(f"--set {text}: expected NAME=NUMBER, for example angle=15")
-        if name.strip() in design:
-            raise DesignError(f"--set {text}: {name.strip()} is given twice")
-        design[name.strip()] = number
+            design[name] = value
     return design

@@ -16,7 +16,7 @@ import msgspec
 from codesign import __version__
 from codesign.parts.component import Component, distinct_parts
 from codesign.parts.part import MirroredPart, Part
-from codesign.problem.design_space import Design
+from codesign.problem.design_space import Design, value_text
 from codesign.problem.evaluation import Evaluation
 from codesign.report.objections import objections
 from codesign.report.study_words import part_words
@@ -134,7 +134,7 @@ class Order:
         else:
             against = [objection.text for objection in objections(evaluation, {}) if objection.final]
             head += [f"**Not to be built: {text}.**\n" for text in against]
-        values = [[name, f"{item['value']:.10g}", item["unit"]] for name, item in self.values.items()]
+        values = [[name, value_text(item["value"]), item["unit"]] for name, item in self.values.items()]
         parts = []
         for part in distinct_parts(self.components):
             mirror = f"mirror image of {_original(part).name}" if isinstance(part, MirroredPart) else ""

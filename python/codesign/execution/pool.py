@@ -24,6 +24,7 @@ from typing import IO, Any, Protocol, Self
 
 from codesign.errors import ExecutionError
 from codesign.execution.worker import LENGTH, write_message
+from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 from codesign.problem.protocols import Problem
@@ -66,7 +67,7 @@ class Task:
     """One evaluation to run."""
 
     number: int
-    design: dict[str, float]
+    design: dict[str, DesignValue]
     trajectory: str | None = None
 
 

@@ -23,6 +23,8 @@ import time
 import traceback
 from typing import IO, TYPE_CHECKING, Any
 
+from codesign.problem.design_space import DesignValue
+
 if TYPE_CHECKING:  # a worker imports what its study needs, nothing more
     from codesign.problem.protocols import PartCache, Problem
 
@@ -56,7 +58,7 @@ def load(loader: str, source: str) -> Problem:
 
 
 def evaluate(
-    study: Problem, design: dict[str, float], trajectory: str | None, cache: PartCache | None, memory_mib: int = 0
+    study: Problem, design: dict[str, DesignValue], trajectory: str | None, cache: PartCache | None, memory_mib: int = 0
 ) -> dict[str, Any]:
     """One evaluation as a message; an exception becomes a failed one that names it."""
     exhausted = False

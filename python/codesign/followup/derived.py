@@ -10,7 +10,7 @@ from typing import Any
 from codesign.errors import DesignError
 from codesign.execution.pool import StudyRef
 from codesign.execution.worker import load
-from codesign.problem.design_space import DesignSpace
+from codesign.problem.design_space import DesignSpace, DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 from codesign.problem.protocols import ExecutionDefaults, OptimizerDefaults, PartCache, Problem
@@ -70,7 +70,7 @@ class DerivedStudy:
         return self.study.execution
 
     def evaluate(
-        self, design: Mapping[str, float], /, trajectory: str | None = None, cache: PartCache | None = None
+        self, design: Mapping[str, DesignValue], /, trajectory: str | None = None, cache: PartCache | None = None
     ) -> Evaluation:
         """As the study's."""
         return self.study.evaluate(design, trajectory=trajectory, cache=cache)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Unpack
 
 from codesign.execution.pool import Executor, Task
+from codesign.problem.design_space import DesignValue
 from codesign.problem.protocols import Problem
 from codesign.search.base import Grid
 from codesign.search.driver import WAIT, checked
@@ -22,7 +23,7 @@ from codesign.storage.store import RunStore
 def revisit(
     out: str | Path,
     trajectories: Sequence[str],
-    designs: Sequence[Mapping[str, float]] | None = None,
+    designs: Sequence[Mapping[str, DesignValue]] | None = None,
     *,
     study: Problem | None = None,
     **resources: Unpack[Resources],

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from codesign.followup.derived import DerivedStudy, load_changes
+from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.protocols import PartCache, Problem
 from codesign.storage.cache import MemoryCache
@@ -48,7 +49,7 @@ class RobustStudy(DerivedStudy):
         return tuple(f"{name}_{statistic}" for name in self.study.objectives for statistic in ("mean", "worst"))
 
     def evaluate(
-        self, design: Mapping[str, float], /, trajectory: str | None = None, cache: PartCache | None = None
+        self, design: Mapping[str, DesignValue], /, trajectory: str | None = None, cache: PartCache | None = None
     ) -> Evaluation:
         """One design on all trajectories (or on the one named); its parts are analyzed once."""
         cache = cache if cache is not None else MemoryCache()

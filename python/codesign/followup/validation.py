@@ -14,6 +14,7 @@ from typing import Any
 from codesign.chain.flight import disturbed
 from codesign.errors import DesignError, StoreError, StudyError
 from codesign.files import write_text
+from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.pareto import spread
@@ -77,12 +78,12 @@ def validate(
     return validation
 
 
-def select(run: ReportData, designs: Iterable[str]) -> dict[str, dict[str, float]]:
+def select(run: ReportData, designs: Iterable[str]) -> dict[str, dict[str, DesignValue]]:
     """Designs by role, each once. Raises: DesignError for an unknown selector, number, or a run without a front."""
     chosen: dict[str, int] = {}
     for selector in designs:
         chosen |= _positions(run, selector)
-    unique: dict[str, dict[str, float]] = {}
+    unique: dict[str, dict[str, DesignValue]] = {}
     for role, position in chosen.items():
         design = run.entries[position].evaluation.design
         if design not in unique.values():

@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from codesign.problem.design_space import DesignValue
+
 Status = Literal["feasible", "infeasible", "failed"]
 
 
@@ -20,7 +22,7 @@ class Evaluation:
     violations: how far each constraint is violated, relative to its limit; 0 where it holds. Ranking uses their sum.
     """
 
-    design: dict[str, float]
+    design: dict[str, DesignValue]
     status: Status
     reason: str | None = None
     objectives: dict[str, float] = field(default_factory=dict)
@@ -33,7 +35,9 @@ class Evaluation:
     provenance: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def failure(cls, design: dict[str, float], reason: str, provenance: dict[str, Any] | None = None) -> Evaluation:
+    def failure(
+        cls, design: dict[str, DesignValue], reason: str, provenance: dict[str, Any] | None = None
+    ) -> Evaluation:
         """An evaluation that gave no numbers."""
         return cls(design=design, status="failed", reason=reason, provenance=provenance or {})
 

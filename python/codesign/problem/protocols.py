@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from codesign.problem.design_space import DesignSpace
+from codesign.problem.design_space import DesignSpace, DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 
@@ -104,6 +104,6 @@ class Problem(Protocol):
         """Defaults of how evaluations run."""
 
     def evaluate(
-        self, design: Mapping[str, float], /, trajectory: str | None = None, cache: PartCache | None = None
+        self, design: Mapping[str, DesignValue], /, trajectory: str | None = None, cache: PartCache | None = None
     ) -> Evaluation:
         """One design, on the study's own trajectory unless another is named."""

@@ -10,10 +10,11 @@ import numpy as np
 from codesign import fem
 from codesign.chain.chain import evaluate_with_fields
 from codesign.chain.flight import joint_names
+from codesign.problem.design_space import DesignValue
 from codesign.report.details import Detail, FlightHistory, StressField, flight_history
 
 
-def compute_detail(study: Any, theta: Mapping[str, float], trajectory: str | None = None) -> Detail:
+def compute_detail(study: Any, theta: Mapping[str, DesignValue], trajectory: str | None = None) -> Detail:
     """Evaluation, stress fields and flight history of a design; `trajectory`: by default the study's own.
 
     Raises: CodesignError where the chain does.

@@ -66,8 +66,9 @@ class Detail:
 
 
 def detail_key(evaluation: Evaluation) -> str:
-    """Name of a design's detail file: its values in order, `15-42-80-108`."""
-    return "-".join(value_text(value) for value in evaluation.design.values())
+    """Name of a design's detail file: its values in order, `15-42-80-108`; hyphens of names are doubled."""
+    values = evaluation.design.values()
+    return "-".join(v.replace("-", "--") if isinstance(v, str) else value_text(v) for v in values)
 
 
 def save_detail(folder: Path, detail: Detail) -> Path:

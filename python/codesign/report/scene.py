@@ -13,6 +13,7 @@ import numpy as np
 import yourdfpy
 from numpy.typing import NDArray
 
+from codesign.problem.design_space import DesignValue
 from codesign.report.link_meshes import LinkMesh, link_meshes, package_paths, read_mesh
 from codesign.robot.description import RobotDescription
 from codesign.transforms import Matrix
@@ -82,7 +83,7 @@ class RobotScene:
 
 def robot_scene(
     study: Any,
-    design: Mapping[str, float],
+    design: Mapping[str, DesignValue],
     fields: Mapping[str, Any] | None = None,
     packages: tuple[Path, ...] | None = None,
 ) -> RobotScene:

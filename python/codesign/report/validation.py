@@ -6,6 +6,8 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from codesign.problem.design_space import DesignValue
+
 FILE = "validation.json"
 ORIGINAL = "original"
 
@@ -29,7 +31,7 @@ class Flight:
     """One validation flight. seed: None for a calm one. objectives: empty if the flight was lost."""
 
     role: str
-    design: dict[str, float]
+    design: dict[str, DesignValue]
     trajectory: str
     seed: int | None
     completed: bool

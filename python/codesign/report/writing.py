@@ -12,6 +12,7 @@ from typing import Any
 
 from codesign.errors import CodesignError, StoreError
 from codesign.files import write_text
+from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, detail_key, load_details, save_detail
@@ -82,7 +83,7 @@ def compute_details(study: Any, run: ReportData) -> ReportData:
         return run
     from codesign.report.compute import compute_detail
 
-    def compute(asked: tuple[dict[str, float], str | None]) -> Evaluation | None:
+    def compute(asked: tuple[dict[str, DesignValue], str | None]) -> Evaluation | None:
         try:
             detail = compute_detail(study, *asked)
         except CodesignError as error:

@@ -10,6 +10,7 @@ from typing import Any, TypedDict, Unpack
 from codesign.errors import StudyError
 from codesign.execution.pool import DEFAULT_LOADER, Executor, Limits, LocalPool, StudyRef
 from codesign.execution.worker import load
+from codesign.problem.design_space import DesignValue
 from codesign.problem.identity import Identity
 from codesign.problem.protocols import Problem
 from codesign.search.driver import SearchDriver
@@ -50,7 +51,7 @@ def optimize(
     seed: int | None = None,
     algorithm: str | None = None,
     start: str = "sobol",
-    first: Sequence[Mapping[str, float]] = (),
+    first: Sequence[Mapping[str, DesignValue]] = (),
     steady: bool = False,
     lag: int | None = None,
     wall_time: float | None = None,
@@ -118,7 +119,7 @@ def sweep(study: StudyLike, counts: Sequence[int], *, out: str | Path, **resourc
 
 
 def evaluate_designs(
-    study: StudyLike, designs: Sequence[Mapping[str, float]], *, out: str | Path, **resources: Unpack[Resources]
+    study: StudyLike, designs: Sequence[Mapping[str, DesignValue]], *, out: str | Path, **resources: Unpack[Resources]
 ) -> Run:
     """Evaluates the given designs, each once, kept and resumable like any run."""
     study = load_problem(study)

@@ -70,6 +70,11 @@ class Run:
         return float(sum(session["seconds"] for session in self.sessions))
 
 
+def _variable(document: dict[str, Any]) -> Variable:
+    """A design variable as a run keeps it; those of earlier versions have no values."""
+    return Variable(**document | {"values": tuple(document.get("values", ()))})
+
+
 def load_run(out: str | Path) -> Run:
     """Reads a run, finished or not, also while it is being written. Raises: StoreError."""
     with RunStore.read(out) as store:
@@ -77,7 +82,7 @@ def load_run(out: str | Path) -> Run:
         return Run(
             out=Path(out),
             study=meta["study"],
-            space=DesignSpace(tuple(Variable(**variable) for variable in meta["variables"])),
+            space=DesignSpace(tuple(_variable(document) for document in meta["variables"])),
             objectives=tuple(meta["objectives"]),
             settings=meta["settings"],
             records=store.records(),

@@ -17,6 +17,7 @@ from typing import IO, Any
 
 from codesign.errors import StoreError
 from codesign.files import replacing
+from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.storage.database import (
     APPLICATION_ID,
@@ -183,7 +184,7 @@ class RunStore:
 
     def enqueue(
         self,
-        rows: Iterable[tuple[int | None, int | None, Grid, dict[str, float]]],
+        rows: Iterable[tuple[int | None, int | None, Grid, dict[str, DesignValue]]],
         study_hash: str,
         trajectory: str = "",
     ) -> None:

@@ -12,6 +12,7 @@ from codesign.names import nearest
 from codesign.parts.materials import material_names
 from codesign.parts.part import Part, parameter_units
 from codesign.problem.quantities import QUANTITIES, REDUCTIONS
+from codesign.study.choices import is_number
 from codesign.study.config import LimitConfig, PartConfig, StudyConfig, VariableConfig
 
 MOST_OBJECTIVES = 6
@@ -51,10 +52,12 @@ def _variable_problems(config: StudyConfig) -> Iterator[Problem]:
     used = {name for part in config.parts for name in part.parameters.values()}
     for name, variable in config.variables.items():
         key = f"variables.{name}"
-        if not name or "=" in name or name != name.strip():
+        if not name or "=" in name or "." in name or name != name.strip():
             yield key, f"{name!r} cannot be given as --set NAME=VALUE"
         yield from _grid_problems(key, variable)
-        if name not in used and not variable.sets:
+        yield from _choice_problems(key, variable)
+        takes = {name, *(f"{name}.{chosen}" for chosen in variable.chosen_keys)}
+        if used.isdisjoint(takes) and not variable.sets and not any("." in chosen for chosen in variable.chosen_keys):
             yield key, "no part takes it and it sets nothing"
     if config.baseline:
         for name in config.baseline:
@@ -65,6 +68,8 @@ def _variable_problems(config: StudyConfig) -> Iterator[Problem]:
 
 
 def _grid_problems(key: str, variable: VariableConfig) -> Iterator[Problem]:
+    if variable.minimum is None or variable.maximum is None or variable.step is None:
+        return
     span = variable.maximum - variable.minimum
     if span <= 0.0:
         yield key, f"max = {variable.maximum:g} must be above min = {variable.minimum:g}"
@@ -72,6 +77,28 @@ def _grid_problems(key: str, variable: VariableConfig) -> Iterator[Problem]:
         yield f"{key}.step", f"{variable.step:g} gives more than {MOST_LEVELS} values from min to max"
     elif abs(span / variable.step - round(span / variable.step)) > 1e-6:
         yield f"{key}.step", f"{variable.step:g} does not divide max - min into whole steps"
+
+
+def _choice_problems(key: str, variable: VariableConfig) -> Iterator[Problem]:
+    listed = "values" if variable.values else "choices"
+    if variable.listed:
+        if len(variable.listed) < 2:
+            yield f"{key}.{listed}", f"{variable.listed[0]!r} alone is no choice: list at least two"
+        if len(set(variable.listed)) < len(variable.listed):
+            yield f"{key}.{listed}", f"{repeated(map(str, variable.listed))} is listed twice"
+    if variable.values and variable.values != sorted(variable.values):
+        yield f"{key}.values", "must ascend: the search takes neighbors in the list for similar"
+    if variable.choices and variable.unit and not isinstance(variable.choices, dict):
+        yield f"{key}.unit", "names have no unit"
+    if isinstance(variable.choices, dict):
+        keys = set(variable.chosen_keys)
+        for name, chosen in variable.choices.items():
+            if set(chosen) != keys:
+                odd = ", ".join(sorted(keys ^ set(chosen)))
+                yield f"{key}.choices.{name}", f"all choices must set the same keys; not so: {odd}"
+            for inner, value in chosen.items():
+                if "." not in inner and not is_number(value):
+                    yield f"{key}.choices.{name}.{inner}", f"{value!r} is not a number, which a part could take"
 
 
 def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]) -> Iterator[Problem]:
@@ -85,9 +112,15 @@ def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]
     for parameter in units:
         if parameter not in part.parameters:
             yield f"{key}.parameters", f"{part.shape} takes {parameter!r} too, which is not given"
+    offered = _offered_numbers(config)
     for parameter, name in part.parameters.items():
-        yield from unknown(f"{key}.parameters.{parameter}", "design variable", name, config.variables)
-        if name in config.variables and parameter in units and config.variables[name].unit != units[parameter]:
+        place = f"{key}.parameters.{parameter}"
+        if name in config.variables and name not in offered:
+            inner = ", ".join(f"{name}.{chosen}" for chosen in config.variables[name].chosen_keys)
+            yield place, f"{name!r} is a choice of names" + (f"; there are {inner}" if inner else ", not a number")
+            continue
+        yield from unknown(place, "design variable", name, offered)
+        if name in offered and parameter in units and offered[name] != units[parameter]:
             yield f"variables.{name}.unit", f"{part.shape} expects {units[parameter]!r} for {parameter}"
     if not part.supports:
         yield f"{key}.supports", "empty: nothing would hold the part; name the faces that are clamped"
@@ -107,6 +140,14 @@ def _load_problems(part: PartConfig, key: str) -> Iterator[Problem]:
                 f"{key}.cases[{case.name}].loads" if part.cases else f"{key}.loads",
                 "empty: nothing would load the part",
             )
+
+
+def _offered_numbers(config: StudyConfig) -> dict[str, str]:
+    """Numbers that parameters of parts may take, with their units."""
+    offered: dict[str, str] = {name: v.unit for name, v in config.variables.items() if not v.choices}
+    for name, v in config.variables.items():
+        offered |= {f"{name}.{key}": v.unit for key in v.chosen_keys if "." not in key}
+    return offered
 
 
 def _number_problems(config: StudyConfig) -> Iterator[Problem]:

@@ -9,20 +9,46 @@ from msgspec import Meta, field
 from codesign.robot.assembly import PartPlacement
 from codesign.robot.clearance import InterferenceSettings
 from codesign.study.flight_config import FlightConfig, TrajectoryConfig
-from codesign.study.sections import Name, NonNegative, Positive, Probability, Section, Seed, Vector3
+from codesign.study.sections import ChoiceName, Name, NonNegative, Positive, Probability, Section, Seed, Vector3
 
 ONLY_CASE = "load"  # name of the load case of a part that has one
 
 
 class VariableConfig(Section, frozen=True, kw_only=True):
-    """One design variable. `sets` lists numbers of the study (dotted paths) that take the variable's value."""
+    """One design variable: an even grid (min, max, step), a list of numbers (values), or named choices.
 
-    minimum: float = field(name="min")
-    maximum: float = field(name="max")
-    step: Positive
+    sets: places of the study (dotted paths; entries of a list by index or name) that take the variable's value.
+    choices: names, or a table of names, each of which sets the same keys: numbers that parameters of parts take as
+    `variable.key`, and places of the study by their dotted path.
+    """
+
+    minimum: float | None = field(name="min", default=None)
+    maximum: float | None = field(name="max", default=None)
+    step: Positive | None = None
+    values: list[float] = []
+    choices: list[ChoiceName] | dict[ChoiceName, dict[Name, float | bool | str]] = []
     unit: Literal["", "mm", "deg"] = ""
     label: str = ""
     sets: list[str] = []
+
+    def __post_init__(self) -> None:
+        grid = [self.minimum, self.maximum, self.step]
+        if [any(n is not None for n in grid), bool(self.values), bool(self.choices)].count(True) != 1 or (
+            None in grid and not self.values and not self.choices
+        ):
+            raise ValueError("a variable needs either min, max and step, or values, or choices")
+        if isinstance(self.choices, dict) and self.sets:
+            raise ValueError("choices of several numbers name in their own keys what they set, without sets")
+
+    @property
+    def listed(self) -> list[float | str]:
+        """What a variable without an even grid takes: numbers, or names of choices."""
+        return [*self.values, *self.choices]
+
+    @property
+    def chosen_keys(self) -> list[str]:
+        """What every choice of several numbers sets."""
+        return list(next(iter(self.choices.values()))) if isinstance(self.choices, dict) and self.choices else []
 
 
 class MaterialConfig(Section, frozen=True, kw_only=True):
@@ -226,7 +252,7 @@ class StudyConfig(Section, frozen=True, kw_only=True):
     description: str = ""
     robot: RobotConfig
     variables: dict[str, VariableConfig]
-    baseline: dict[str, float] = {}
+    baseline: dict[str, float | str] = {}
     materials: dict[str, MaterialConfig] = {}
     parts: list[PartConfig]
     fem: FemConfig = FemConfig()

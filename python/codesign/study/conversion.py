@@ -70,16 +70,11 @@ def type_problems(raw: RawStudy) -> list[str]:
     return found
 
 
-def numbers(node: Any, place: str = "") -> Iterator[tuple[str, float]]:
+def numbers(node: Any) -> Iterator[tuple[str, float]]:
     """All numbers of a document with their places."""
-    if isinstance(node, dict):
-        for key, child in node.items():
-            yield from numbers(child, f"{place}.{key}" if place else key)
-    elif isinstance(node, list):
-        for index, child in enumerate(node):
-            yield from numbers(child, f"{place}[{index}]")
-    elif isinstance(node, int | float) and not isinstance(node, bool):
-        yield place, node
+    for place, value in leaves(node):
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            yield place, value
 
 
 def _explained(raw: RawStudy, error: msgspec.ValidationError) -> str:
@@ -178,32 +173,73 @@ def _choices(kind: kinds.Type) -> list[str]:
     return [str(value) for value in kind.values] if isinstance(kind, kinds.LiteralType) else []
 
 
-def replace_number(raw: RawStudy, dotted: str, value: float, path: Path) -> None:
-    """Sets raw["a"]["b"] for "a.b"; list items by index. The place must exist and hold a number that decides results.
+def replace_value(raw: RawStudy, dotted: str, value: float | str | bool, path: Path) -> None:
+    """Sets raw["a"]["b"] for "a.b"; entries of a list by index or, of tables, by their name.
 
-    Raises: StudyError, with the nearest place that holds a number.
+    The place must exist, decide results and hold a value of the same kind: number, text, true or false.
+    Raises: StudyError, with the nearest place.
     """
+    kind = _value_kind(value)
 
     def refuse(reason: str) -> StudyError:
-        places = [place.replace("[", ".").replace("]", "") for place, _ in numbers(raw)]
-        near = closest(dotted, filter(_settable, places))
-        hint = f"did you mean {near!r}?" if near else "name a number of this file, `table.key` or `table.0.key`"
+        near = closest(dotted, filter(_settable, _dotted_places(raw, kind)))
+        hint = f"did you mean {near!r}?" if near else f"name a {kind} of this file, `table.key` or `table.0.key`"
         return StudyError(f"{path}: sets = {dotted!r}: {reason}; {hint}")
 
     *parents, last = dotted.split(".")
     node: Any = raw
     try:
         for key in parents:
-            node = node[int(key)] if isinstance(node, list) else node[key]
-        index = int(last) if isinstance(node, list) else last
+            node = node[_list_index(node, key)] if isinstance(node, list) else node[key]
+        index = _list_index(node, last) if isinstance(node, list) else last
         old = node[index]
     except (KeyError, IndexError, ValueError, TypeError):
-        raise refuse("no such number in the study") from None
-    if isinstance(old, bool) or not isinstance(old, int | float):
-        raise refuse("not a number")
+        raise refuse(f"no such {kind} in the study") from None
+    if _value_kind(old) != kind:
+        raise refuse(f"not a {kind}")
     if not _settable(dotted):
         raise refuse("does not enter an evaluation")
-    node[index] = int(value) if isinstance(old, int) and float(value).is_integer() else value
+    whole = kind == "number" and isinstance(old, int) and float(value).is_integer()
+    node[index] = int(value) if whole else value
+
+
+def leaves(node: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+    """All values of a document that are no tables or lists, with their places."""
+    if isinstance(node, dict):
+        for key, child in node.items():
+            yield from leaves(child, f"{place}.{key}" if place else key)
+    elif isinstance(node, list):
+        for index, child in enumerate(node):
+            yield from leaves(child, f"{place}[{index}]")
+    else:
+        yield place, node
+
+
+def _dotted_places(node: Any, kind: str, above: tuple[str, ...] = ()) -> Iterator[str]:
+    """Dotted paths to all values of a kind; entries of lists by index and by name."""
+    children: Iterable[tuple[str, Any]] = ()
+    if isinstance(node, dict):
+        children = ((key, child) for key, child in node.items() if "." not in key)
+    elif isinstance(node, list):
+        named = [(child["name"], child) for child in node if isinstance(child, dict) and "name" in child]
+        children = [*((str(index), child) for index, child in enumerate(node)), *named]
+    elif _value_kind(node) == kind:
+        yield ".".join(above)
+    for key, child in children:
+        yield from _dotted_places(child, kind, (*above, key))
+
+
+def _list_index(node: list[Any], key: str) -> int:
+    """Raises: ValueError if no table of the list has the name."""
+    if key.isdecimal():
+        return int(key)
+    return [child.get("name") if isinstance(child, dict) else None for child in node].index(key)
+
+
+def _value_kind(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true or false"
+    return "number" if isinstance(value, int | float) else "text" if isinstance(value, str) else ""
 
 
 def _settable(dotted: str) -> bool:

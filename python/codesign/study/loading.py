@@ -15,9 +15,10 @@ from typing import Any, TypeVar, cast
 from codesign.errors import DesignError, StudyError, UrdfError
 from codesign.names import nearest
 from codesign.parts.part import Part
-from codesign.problem.design_space import DesignSpace, Variable
+from codesign.problem.design_space import DesignSpace
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, reference_problems
+from codesign.study.choices import design_space
 from codesign.study.config import PartConfig, RawStudy, StudyConfig
 from codesign.study.conversion import convert, type_problems
 from codesign.study.fingerprint import study_identity
@@ -77,13 +78,12 @@ def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
     except UrdfError as error:
         raise StudyError(f"{path}: robot.urdf: {error}") from error
     modules = {cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()}
-    space = DesignSpace(tuple(Variable(n, v.minimum, v.maximum, v.step, v.unit) for n, v in config.variables.items()))
     return kind(
         source=source if source in shipped_studies() else str(path),
         path=path,
         raw=raw,
         config=config,
-        space=space,
+        space=design_space(config),
         part_classes=part_classes,
         functions=functions,
         base_robot=robot,
@@ -121,8 +121,9 @@ def _refuse(path: Path, problems: Iterable[Problem]) -> None:
 def _design_problems(study: StudyData) -> Iterator[Problem]:
     """What designs of the grid show: values that variables set, the baseline, the parts' options, faces and places."""
     space = study.space
-    second, last, middle = [1] * len(space.levels), [n - 1 for n in space.levels], [n // 2 for n in space.levels]
-    for corner in ([0] * len(space.levels), second, last):
+    last, middle = [n - 1 for n in space.levels], [n // 2 for n in space.levels]
+    second = [min(1, n) for n in last]
+    for corner in ([0] * len(space.levels), second, last, *_other_choices(study.space)):
         configured = study.configured(space.from_indices(corner))
         yield from chain(reference_problems(configured, study.part_classes), flight_problems(configured))
     designs = [space.from_indices(indices) for indices in (middle, [0] * len(middle), last)]
@@ -132,6 +133,13 @@ def _design_problems(study: StudyData) -> Iterator[Problem]:
         yield "baseline", str(error)
     yield from robot_problems(study.config, study.base_robot)
     yield from built_problems(study.config, study.part_classes, study.base_robot, designs)
+
+
+def _other_choices(space: DesignSpace) -> Iterator[list[int]]:
+    """Grid points beyond the corners that together have every named choice."""
+    most = max((variable.levels for variable in space.variables if variable.named), default=0)
+    for k in range(2, most - 1):
+        yield [min(k, variable.levels - 1) if variable.named else 0 for variable in space.variables]
 
 
 def find_problems(source: str | Path) -> list[str]:

@@ -11,18 +11,20 @@ from codesign.errors import CodesignError, ModelError
 from codesign.geometry.shape import face_names
 from codesign.parts.load_case import pressing_direction
 from codesign.parts.part import Part
-from codesign.problem.design_space import Design
+from codesign.problem.design_space import Design, DesignValue
 from codesign.robot.assembly import PartBody, assemble
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
 from codesign.study.checks import Problem, unknown
+from codesign.study.choices import numbers_of
 from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
 
 
-def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], design: Mapping[str, float]) -> Part:
+def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], design: Mapping[str, DesignValue]) -> Part:
     """A part of a design. Raises: GeometryError if the design gives no sound part."""
     make: Callable[..., Part] = part_class
-    parameters = {parameter: design[variable] for parameter, variable in part.parameters.items()}
+    numbers = numbers_of(config, design)
+    parameters = {parameter: numbers[variable] for parameter, variable in part.parameters.items()}
     density = part.density_kg_m3 or config.materials[part.material].density_kg_m3
     return make(**parameters, **part.options, density=density)
 

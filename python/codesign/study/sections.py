@@ -10,6 +10,7 @@ Positive = Annotated[float, Meta(gt=0)]
 NonNegative = Annotated[float, Meta(ge=0)]
 Probability = Annotated[float, Meta(ge=0, le=1)]
 Name = Annotated[str, Meta(min_length=1)]
+ChoiceName = Annotated[str, Meta(pattern=r"^\w[\w.+-]*$")]  # is written in --set and in names of files
 Deviation = Annotated[float, Meta(ge=0, le=0.15)]  # relative; random numbers stay within six deviations
 Seed = Annotated[int, Meta(ge=0, le=2**32 - 1)]
 Sign = Annotated[float, Meta(ge=-1, le=1)]

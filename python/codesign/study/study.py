@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from codesign.parts.part import Part
-from codesign.problem.design_space import Design, DesignSpace
+from codesign.problem.design_space import Design, DesignSpace, DesignValue
 from codesign.problem.identity import Identity
 from codesign.robot.description import RobotDescription
+from codesign.study.choices import settings_of
 from codesign.study.config import RawStudy, StudyConfig
-from codesign.study.conversion import convert, replace_number
+from codesign.study.conversion import convert, replace_value
 from codesign.study.fingerprint import part_identity
 
 
@@ -87,13 +88,12 @@ class StudyData:
         """Names of the trajectories."""
         return tuple(self.config.trajectories)
 
-    def configured(self, design: Mapping[str, float]) -> StudyConfig:
-        """The configuration with the numbers that design variables set replaced."""
-        setting = {n: v for n, v in self.config.variables.items() if v.sets}
-        if not setting:
+    def configured(self, design: Mapping[str, DesignValue]) -> StudyConfig:
+        """The configuration with what the design variables set replaced."""
+        replaced = list(settings_of(self.config, design))
+        if not replaced:
             return self.config
         raw = json.loads(json.dumps(self.raw))
-        for name, variable in setting.items():
-            for path in variable.sets:
-                replace_number(raw, path, design[name], self.path)
+        for place, value in replaced:
+            replace_value(raw, place, value, self.path)
         return convert(raw, self.path)

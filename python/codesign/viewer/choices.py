@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from codesign.errors import CodesignError
-from codesign.problem.design_space import value_text
+from codesign.problem.design_space import DesignValue, value_text
 from codesign.problem.evaluation import Evaluation
 from codesign.report.details import FOLDER, Detail, load_details
 from codesign.report.reading import read_report_data, same_study, study_of
@@ -21,12 +21,12 @@ class Choice:
     """A design that can be picked: how it is called, its evaluation (None: not evaluated yet), its values."""
 
     name: str
-    design: dict[str, float]
+    design: dict[str, DesignValue]
     evaluation: Evaluation | None = None
 
 
 def find_choices(
-    study: Any, design: Mapping[str, float] | None, run_directory: str | Path | None
+    study: Any, design: Mapping[str, DesignValue] | None, run_directory: str | Path | None
 ) -> tuple[list[Choice], Any, dict[str, Detail]]:
     """What can be picked, the one to show first at the head; the study; details that are known."""
     choices: list[Choice] = []

@@ -18,6 +18,7 @@ import numpy as np
 
 from codesign.errors import CodesignError, ExecutionError
 from codesign.files import write_text
+from codesign.problem.design_space import DesignValue
 from codesign.report.compute import compute_detail
 from codesign.report.details import Detail, detail_key, save_detail
 from codesign.report.link_meshes import absence_in_words, absent_meshes, package_paths
@@ -37,7 +38,7 @@ ROBOT = "the robot"
 
 def view(
     study: Any,
-    design: Mapping[str, float] | None = None,
+    design: Mapping[str, DesignValue] | None = None,
     *,
     run_directory: str | Path | None = None,
     trajectory: str | None = None,
@@ -60,7 +61,7 @@ def view(
 def record(
     path: str | Path,
     study: Any,
-    design: Mapping[str, float] | None = None,
+    design: Mapping[str, DesignValue] | None = None,
     *,
     run_directory: str | Path | None = None,
     trajectory: str | None = None,

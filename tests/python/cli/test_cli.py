@@ -30,7 +30,7 @@ def test_help_has_an_example(command):
     [
         (("evaluate", "--set", "angle=15"), "no value for design variable 'distance'"),
         (("evaluate", *ORIGINAL, "--set", "wing=1"), "unknown design variable 'wing'"),
-        (("evaluate", "--set", "angle"), "expected NAME=NUMBER"),
+        (("evaluate", "--set", "angle"), "expected NAME=VALUE"),
         (("evaluate", "--study", "nowhere", *ORIGINAL), "no such study"),
         (("evaluate", *ORIGINAL, "--trajectory", "loop"), "no trajectory 'loop'"),
         (("fly", "absent.urdf"), "absent.urdf"),

@@ -67,3 +67,50 @@ def test_values_are_shown_exactly():
         "1234.5678",
         "-0.5",
     ]
+
+
+LISTED = DesignSpace(
+    (
+        Variable.listed("wall", (1.0, 1.5, 3.0), "mm"),
+        Variable.listed("alloy", ("ergal", "ti-6al-4v", "7068")),
+        Variable("x", 0, 1, 1),
+    )
+)
+
+
+def test_listed_values_lie_on_the_integer_grid():
+    assert LISTED.levels == (3, 3, 2)
+    for indices in ((0, 0, 0), (1, 2, 1), (2, 1, 0)):
+        assert LISTED.indices(LISTED.from_indices(indices)) == indices
+    assert LISTED.from_indices((2, 1, 1)).to_dict() == {"wall": 3, "alloy": "ti-6al-4v", "x": 1}
+    assert str(LISTED.from_indices((1, 0, 1))) == "wall=1.5, alloy=ergal, x=1"
+    assert [str(variable) for variable in LISTED.variables] == ["1, 1.5, 3 mm", "ergal, ti-6al-4v, 7068", "0 … 1 by 1"]
+
+
+def test_a_name_that_looks_like_a_number_is_found_as_one():
+    assert LISTED.indices([1.0, 7068.0, 0]) == (0, 2, 0)
+
+
+@pytest.mark.parametrize(
+    ("theta", "message"),
+    [
+        ({"wall": 2.0, "alloy": "ergal", "x": 0}, "wall = 2 mm: not in the list 1, 1.5, 3 mm"),
+        ({"wall": 1.0, "alloy": "ergl", "x": 0}, r"alloy = ergl: no such choice; did you mean 'ergal'\?"),
+        ({"wall": 1.0, "alloy": 3.0, "x": 0}, "alloy = 3: no such choice"),
+        ({"wall": "ergal", "alloy": "ergal", "x": 0}, "wall = 'ergal': design values must be numbers"),
+    ],
+)
+def test_what_is_not_listed_is_refused(theta, message):
+    with pytest.raises(DesignError, match=message):
+        LISTED.design(theta)
+
+
+def test_every_second_of_a_list():
+    assert LISTED.variables[1].every(2).values == ("ergal", "7068")
+    assert LISTED.variables[0].every(2).maximum == 3.0
+
+
+def test_positions_of_names_are_their_places():
+    wall, alloy, _ = LISTED.variables
+    assert (wall.position(1.5), wall.minimum, wall.maximum) == (1.5, 1.0, 3.0)
+    assert (alloy.position("7068"), alloy.minimum, alloy.maximum) == (2.0, 0.0, 2.0)

@@ -24,7 +24,7 @@ from codesign.study.loading import study_from
 
 Place = tuple[str | int, ...]
 # Of a load: one kind; of a part: one load case or several.
-EITHER = (*LOAD_KINDS, "face", "point_mm", "moment_n_m", "loads", "cases")
+EITHER = (*LOAD_KINDS, "face", "point_mm", "moment_n_m", "loads", "cases", "min", "max", "step", "values", "choices")
 NAN, INFINITY = math.nan, math.inf
 WHOLE = """
 [[parts]]
@@ -35,7 +35,7 @@ material = "steel"
 density_kg_m3 = 7000.0
 supports = ["bottom"]
 loads = [{ face = "top", pressing_n = 100.0 }]
-options = { depth = 20.0 }
+options = { depth = 20.0, name = "rod" }
 
 [materials.steel]
 young_modulus_gpa = 200.0
@@ -48,6 +48,19 @@ min = 20.0
 max = 80.0
 step = 5.0
 sets = ["flight.gains.attitude_proportional"]
+
+[variables.width]
+values = [16.0, 20.0, 24.0]
+unit = "mm"
+sets = ["parts.rod.options.depth"]
+
+[variables.alloy]
+choices = ["steel", "ti-6al-4v"]
+sets = ["parts.rod.material"]
+
+[variables.bar]
+choices.flat = { wide = 30.0, "parts.rod.options.name" = "flat" }
+choices.high = { wide = 40.0, "parts.rod.options.name" = "high" }
 
 [flight.turbine]
 K_T = 0.24
@@ -107,9 +120,9 @@ class Rod(Part):
 def complete(raw: dict[str, Any]) -> None:
     """Fills in what has a default, so that every key of the configuration has a value."""
     raw["robot"]["visuals"] = "package://absent/robot.urdf"
-    raw["variables"]["gain"]["unit"] = ""
-    raw["variables"]["gain"]["label"] = "attitude gain"
-    raw["baseline"]["gain"] = 50.0
+    for name, variable in raw["variables"].items():
+        raw["variables"][name] = {"unit": "", "label": f"the {name}", "sets": []} | variable
+    raw["baseline"] |= {"gain": 50.0, "width": 20.0, "alloy": "steel", "bar": "flat"}
     raw["parts"][0] |= {"density_kg_m3": 2810.0, "options": {"name": "strut"}}
     place = raw["parts"][0]["placements"][0]
     pose = {"xyz_mm": [0.0, 0.0, 0.0], "rpy_deg": [0.0, 0.0, 0.0]}
@@ -155,7 +168,8 @@ def template(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], 
 def places(kind: kinds.Type, node: Any, place: Place = ()) -> Iterator[tuple[Place, kinds.Type]]:
     """Every key of the configuration where `node` has it, one entry of each list and table, with its type."""
     if isinstance(kind, kinds.UnionType):
-        kind = next(other for other in kind.types if not isinstance(other, kinds.NoneType))
+        known = [other for other in kind.types if not isinstance(other, kinds.NoneType)]
+        kind = next((k for k in known if isinstance(k, kinds.DictType) and isinstance(node, dict)), known[0])
     if place:
         yield place, kind
     if isinstance(kind, kinds.StructType):
@@ -165,8 +179,8 @@ def places(kind: kinds.Type, node: Any, place: Place = ()) -> Iterator[tuple[Pla
             assert field.encode_name in node, f"{place}: the template lacks {field.encode_name}"
             yield from places(field.type, node[field.encode_name], (*place, field.encode_name))
     elif isinstance(kind, kinds.DictType) and node:
-        key = list(node)[-1]
-        yield from places(kind.value_type, node[key], (*place, key))
+        for key in list(node) if place == ("variables",) else list(node)[-1:]:
+            yield from places(kind.value_type, node[key], (*place, key))
     elif isinstance(kind, kinds.TupleType):
         yield from places(kind.item_types[0], node[0], (*place, 0))
     elif isinstance(kind, kinds.CollectionType) and node:
@@ -307,9 +321,9 @@ def test_a_misspelt_key_is_answered_by_the_nearest_one(template) -> None:
 
 def _in_free_table(place: Place) -> bool:
     """Whether the last key is a name that the study's author chose."""
-    return len(place) > 1 and place[-2] in (
+    return "choices" in place[-3:-1] or (len(place) > 1 and place[-2] in (
         "variables", "baseline", "materials", "trajectories", "parameters", "options", "joints", "limits",
-    )  # fmt: skip
+    ))  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def draw_chosen(run: ReportData, shown: dict[str, Evaluation]) -> Any:
     for axes, part, title in zip(
         panels, (slice(0, split), slice(split, None)), ("parameters", "objectives, lower is better"), strict=True
     ):
-        _lines(axes, names[part], low[part], high[part])
+        _lines(axes, names[part], _ends(run, low, high)[part])
         axes.set_title(title)
         places = np.arange(len(names[part]))
         for (role, values), (color, size) in zip(zip(shown, scaled[:, part], strict=True), _looks(shown), strict=True):
@@ -48,13 +48,21 @@ def draw_chosen(run: ReportData, shown: dict[str, Evaluation]) -> Any:
     return figure
 
 
-def _lines(axes: Any, names: Sequence[str], low: Matrix, high: Matrix) -> None:
+def _ends(run: ReportData, low: Matrix, high: Matrix) -> list[tuple[str, str]]:
+    """What stands at both ends of each axis: numbers, or the first and the last name of a choice."""
+    ends = [(number(float(a), 4), number(float(b), 4)) for a, b in zip(low, high, strict=True)]
+    count = len(run.variables)
+    named = [v.bounds_text() if v.named else end for v, end in zip(run.variables, ends[:count], strict=True)]
+    return named + ends[count:]
+
+
+def _lines(axes: Any, names: Sequence[str], ends: Sequence[tuple[str, str]]) -> None:
     """A horizontal line for each name, from its lowest to its highest value."""
     places = np.arange(len(names))
     axes.hlines(places, 0.0, 1.0, color=style.LINE, linewidth=1.0, zorder=0)
-    for place, a, b in zip(places, low, high, strict=True):
-        axes.text(-0.02, place, number(float(a), 4), ha="right", va="center", fontsize=6, color=style.MUTED)
-        axes.text(1.02, place, number(float(b), 4), ha="left", va="center", fontsize=6, color=style.MUTED)
+    for place, (a, b) in zip(places, ends, strict=True):
+        axes.text(-0.02, place, a, ha="right", va="center", fontsize=6, color=style.MUTED)
+        axes.text(1.02, place, b, ha="left", va="center", fontsize=6, color=style.MUTED)
     axes.set_yticks(places, [textwrap.fill(name, 30) for name in names])
     axes.set(xlim=(-0.12, 1.12), ylim=(len(names) - 0.5, -0.5), xticks=[])
     axes.grid(visible=False)
@@ -97,10 +105,10 @@ def parallel(data: FigureData) -> Any:
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)
     axes.spines["bottom"].set_visible(False)
-    for x, a, b in zip(places, low, high, strict=True):
+    for x, (a, b) in zip(places, _ends(run, low, high), strict=True):
         axes.axvline(x, color=style.MUTED, linewidth=0.6, zorder=0)
         for y, value, side in ((-0.03, a, "top"), (1.03, b, "bottom")):
-            axes.text(x, y, number(float(value), 4), ha="center", va=side, fontsize=6, color=style.MUTED)
+            axes.text(x, y, value, ha="center", va=side, fontsize=6, color=style.MUTED)
     axes.tick_params(axis="x", length=0, pad=12)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.06), ncols=2)
     return figure
@@ -108,7 +116,7 @@ def parallel(data: FigureData) -> Any:
 
 def _row(run: ReportData, evaluation: Evaluation) -> Matrix:
     """Parameters and objectives of a design in one row."""
-    return np.concatenate([[evaluation.design[v.name] for v in run.variables], run.vector(evaluation)])
+    return np.concatenate([[v.position(evaluation.design[v.name]) for v in run.variables], run.vector(evaluation)])
 
 
 def _names(run: ReportData) -> list[str]:

@@ -17,7 +17,7 @@ function number(value, digits = 4) {
   const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return value.toFixed(Math.min(decimals, 8)).replace('-', '−');
 }
-const plain = value => String(value).replace('-', '−');
+const plain = value => typeof value === 'string' ? escaped(value) : String(value).replace('-', '−');
 const percent = (value, digits = 1) => !known(value) ? '' :
   (value > 0 ? '+' : value < 0 ? '−' : '±') + Math.abs(100 * value).toFixed(digits) + ' %';
 const sense = value => !known(value) || Math.abs(value) < 5e-4 ? '' : value < 0 ? 'good' : 'bad';

@@ -8,10 +8,11 @@ function card(i) {
   const tags = roles(d).map(r => `<span class="tag${r === 'best compromise' || r === 'original' ? ' plain' : ''}">${escaped(r)}</span>`);
   if (d.status !== FEASIBLE) tags.push(`<span class="tag warn">${STATUS[d.status]}</span>`);
   const variables = report.variables.map((v, k) => {
-    const place = value => 100 * (value - v.min) / ((v.max - v.min) || 1);
+    const place = value => 100 * ((v.names ? v.names.indexOf(value) : value) - v.min) / ((v.max - v.min) || 1);
+    const range = v.names ? `one of ${v.names.join(', ')}` : `between ${plain(v.min)} and ${plain(v.max)}`;
     const was = original && d !== original ? `<u style="left:${place(original.x[k])}%" title="original: ${plain(original.x[k])}"></u>` : '';
     return `<div class="row"><span>${escaped(v.label)}</span><b>${withUnit(plain(d.x[k]), v.unit)}</b>` +
-      `<div class="track" role="img" aria-label="between ${plain(v.min)} and ${plain(v.max)}">${was}<i style="left:${place(d.x[k])}%"></i></div></div>`;
+      `<div class="track" role="img" aria-label="${escaped(range)}">${was}<i style="left:${place(d.x[k])}%"></i></div></div>`;
   });
   const objectives = report.objectives.map((o, k) =>
     `<div class="row"><span>${escaped(o.label)}</span><b>${withUnit(number(d.f[k]), o.unit)}<span class="delta">${percent(change(d, k))}</span></b></div>`);

@@ -53,6 +53,7 @@ def page_document(
     return {
         "variables": [
             {"key": v.name, "label": run.label(v), "unit": _unit(v.unit), "min": v.minimum, "max": v.maximum}
+            | ({"names": list(v.values)} if v.named else {})
             for v in run.variables
         ],
         "objectives": [

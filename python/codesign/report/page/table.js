@@ -8,7 +8,7 @@ const remark = d => [...roles(d), ...(d.status === FEASIBLE ? d.against : [d.rea
 
 function columns() {
   const found = [{head: 'Design', value: d => d.id ?? -1, text: d => d.id === null ? 'original' : d.id}];
-  report.variables.forEach((v, k) => found.push({head: v.label, unit: v.unit, value: d => d.x[k], text: d => plain(d.x[k])}));
+  report.variables.forEach((v, k) => found.push({head: v.label, unit: v.unit, text_align: Boolean(v.names), value: d => d.x[k], text: d => plain(d.x[k])}));
   report.objectives.forEach((o, k) => found.push({
     head: o.label, unit: o.unit, value: d => d.f[k],
     text: d => known(d.f[k]) ? number(d.f[k]) + (original ? `<small>${percent(change(d, k))}</small>` : '') : lacking(d),
