@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import sys
 from collections import Counter
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from codesign.problem.design_space import DesignSpace, value_text
+from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import least_infeasible
 
 if TYPE_CHECKING:
@@ -146,17 +145,6 @@ def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:
     elif reasons := Counter(evaluation.reason for evaluation in evaluations if evaluation.reason):
         reason, count = reasons.most_common(1)[0]
         out.print(f"all {len(evaluations)} designs failed, {count} of them: {reason}", soft_wrap=True)
-
-
-def print_study(space: DesignSpace, objectives: Sequence[str], limited: Sequence[str]) -> None:
-    """What a sound study varies, minimizes and limits."""
-    table = Table("variable", "values", "number", box=None, pad_edge=False)
-    for variable in space.variables:
-        table.add_row(variable.name, str(variable), str(variable.levels))
-    out.print(table)
-    out.print(f"{math.prod(space.levels):,} designs", highlight=False)
-    out.print(f"minimized: {', '.join(objectives)}")
-    out.print(f"limited: {', '.join(dict.fromkeys(limited))}")
 
 
 def print_stress(document: dict[str, Any]) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 COMMANDS = (
     "evaluate", "fly", "optimize", "resume", "runs", "report", "validate", "view", "export", "stress", "new",
-    "check", "doctor",
+    "check", "doctor", "materials", "schema",
 )  # fmt: skip
 ORIGINAL = ("--set", "angle=15", "--set", "distance=42", "--set", "offset=80", "--set", "length=108")
 
@@ -98,3 +98,20 @@ def test_doctor_knows_what_is_there():
     document = json.loads(codesign("doctor", "--json").stdout)
     assert document["problems"] == {}
     assert document["libraries"]["CGAL"]
+
+
+def test_check_tells_what_a_study_varies_as_json_or_what_is_wrong():
+    summary = json.loads(codesign("check", "gimbal_quad", "--json").stdout)
+    assert summary["problems"] == []
+    assert [v["levels"] for v in summary["variables"]] == [21, 14]
+    assert summary["designs"] == 294
+    assert summary["objectives"] == ["momentum", "joint_velocity", "thrust"]
+    assert {"key": "safety_factor", "min": 10.0, "max": None}.items() <= summary["limits"][1].items()
+
+
+def test_check_of_a_broken_study_ends_with_2(tmp_path):
+    file = tmp_path / "study.toml"
+    file.write_text("name = 'broken'\n[variable.x]\nmin = 1\n")
+    result = codesign("check", str(file), "--json")
+    assert result.returncode == 2
+    assert any("did you mean 'variables'" in problem for problem in json.loads(result.stdout)["problems"])

@@ -1,4 +1,4 @@
-"""Commands about studies: new, check."""
+"""Commands about studies: new, check, schema."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from codesign.cli.console import out, print_json, print_study
+from codesign.cli.console import out, print_json
 from codesign.cli.options import DEFAULT_STUDY, JsonOption
 
 commands = typer.Typer()
@@ -25,23 +25,40 @@ def new(folder: Annotated[Path, typer.Argument(help="New folder for the study.")
     return 0
 
 
-@commands.command(epilog="Example: `codesign check my_study`")
+@commands.command(epilog="Example: `codesign check my_study --time`")
 def check(
     study: Annotated[str, typer.Argument(help="A shipped study's name or the path of a study.toml.")] = DEFAULT_STUDY,
+    time: Annotated[bool, typer.Option("--time", help="Evaluate one design, too: what an evaluation costs.")] = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Everything that is wrong with a study, at once; else what varies, what is minimized and what must hold."""
-    from codesign.chain.judge import limits
+    """Everything that is wrong with a study, at once; else what varies, what is minimized and what must hold.
+
+    Exit code 2 if anything is wrong.
+    """
     from codesign.chain.study import load_study
+    from codesign.cli.study_summary import measured, print_study, study_summary
     from codesign.study.loading import find_problems
 
     problems = find_problems(study)
-    if as_json:
-        print_json({"problems": problems})
-    elif problems:
-        for problem in problems:
+    if problems:
+        if as_json:
+            print_json({"problems": problems})
+        for problem in [] if as_json else problems:
             out.print(problem, soft_wrap=True)
+        return 2
+    loaded = load_study(study)
+    summary = study_summary(loaded) | ({"evaluation": measured(loaded)} if time else {})
+    if as_json:
+        print_json({"problems": [], **summary})
     else:
-        loaded = load_study(study)
-        print_study(loaded.space, loaded.objectives, [limit.quantity.title for limit in limits(loaded.config)])
-    return 1 if problems else 0
+        print_study(summary)
+    return 0
+
+
+@commands.command(epilog="Example: `codesign schema > study.schema.json`")
+def schema() -> int:
+    """JSON Schema of study.toml, for editors: `#:schema study.schema.json` in its first line."""
+    from codesign.study.reference import study_schema
+
+    print_json(study_schema())
+    return 0
