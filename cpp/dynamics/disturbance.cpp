@@ -18,22 +18,6 @@ RandomStream stream(std::uint64_t seed, std::uint64_t purpose) {
 
 }  // namespace
 
-std::uint64_t RandomStream::next() {
-  state_ += 0x9e3779b97f4a7c15ULL;
-  std::uint64_t z = state_;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-
-double RandomStream::uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-
-double RandomStream::normal() {
-  double sum = -6.0;
-  for (int i = 0; i < 12; ++i) sum += uniform();
-  return sum;
-}
-
 Gusts::Gusts(const FlightSettings& settings)
     : mean_(settings.disturbances.wind_force),
       deviation_(settings.disturbances.gust_deviation),

@@ -1,28 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 
+#include "base/random_stream.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "dynamics/model.hpp"
 
 // What the plant has and the controller does not know: wind, gusts, errors of mass and thrust.
 namespace codesign::dynamics {
-
-// Random numbers that are the same bits on every machine with IEEE doubles: SplitMix64 (Steele,
-// Lea, Flood, OOPSLA 2014) for the integers, their upper 53 bits over 2⁵³ for uniform numbers in
-// [0, 1), and the sum of twelve of these minus six for nearly normal ones (mean 0, variance 1,
-// within ±6): additions only, no library function whose last digit may differ.
-class RandomStream {
- public:
-  explicit RandomStream(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next();
-  double uniform();
-  double normal();
-
- private:
-  std::uint64_t state_;
-};
 
 // First-order Gauss-Markov force per world axis: x ← φ x + σ √(1−φ²) ξ, φ = exp(−step/time),
 // started in its stationary distribution.

@@ -3,9 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <utility>
 
+#include "base/random_stream.hpp"
 #include "errors.hpp"
 
 namespace codesign::fem {
@@ -53,8 +53,8 @@ struct Projection {
   }
 };
 
-bool stand_still(const Eigen::VectorXd& value, const Eigen::VectorXd& last,
-                 const WantedEigenvalues& wanted) {
+bool converged(const Eigen::VectorXd& value, const Eigen::VectorXd& last,
+               const WantedEigenvalues& wanted) {
   for (Eigen::Index i = 0; i < value.size(); ++i) {
     const double change = std::abs(value[i] - last[i]), size = std::abs(value[i]);
     const bool negligible = size <= wanted.negligible;
@@ -68,10 +68,9 @@ bool stand_still(const Eigen::VectorXd& value, const Eigen::VectorXd& last,
 }  // namespace
 
 Eigen::MatrixXd random_block(Eigen::Index rows, Eigen::Index columns) {
-  std::mt19937 generator(1);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  RandomStream random(1);
   Eigen::MatrixXd block(rows, columns);
-  for (Eigen::Index i = 0; i < block.size(); ++i) block.data()[i] = uniform(generator);
+  for (Eigen::Index i = 0; i < block.size(); ++i) block.data()[i] = 2.0 * random.uniform() - 1.0;
   return block;
 }
 
@@ -95,7 +94,7 @@ Eigenpairs extreme_eigenpairs(const LowerMatrix& inner, const SelfAdjoint& apply
     const Eigen::MatrixXd symmetric = 0.5 * (projection.matrix + projection.matrix.transpose());
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(symmetric);  // ascending
     value << ritz.eigenvalues().tail(top).reverse(), ritz.eigenvalues().head(bottom);
-    const bool still = stand_still(value, last, wanted);
+    const bool still = converged(value, last, wanted);
     last = value;
     if (!still && added > 0) continue;
     Eigen::MatrixXd coefficients(basis.size, top + bottom);

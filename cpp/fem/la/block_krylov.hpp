@@ -15,7 +15,7 @@ using SelfAdjoint =
 struct WantedEigenvalues {
   Eigen::Index largest = 1;   // how many of the greatest
   Eigen::Index smallest = 0;  // how many of the least
-  double tolerance = 1e-9;    // relative change of a value that stands still
+  double tolerance = 1e-9;    // relative change of a converged eigenvalue
   double negligible = 0.0;    // a value of smaller magnitude need only be seen to stay so small
 };
 
@@ -26,13 +26,14 @@ struct Eigenpairs {
   Eigen::MatrixXd vectors;
 };
 
-// Block Krylov method with full orthogonalisation, until the wanted eigenvalues stand still.
+// Block Lanczos method with full reorthogonalization (Rayleigh-Ritz on a block Krylov space), until
+// the wanted eigenvalues have converged.
 // inner: M. start: a block of vectors, smooth ones for elliptic problems. Throws SolverError if the
-// values do not come to rest.
+// eigenvalues do not converge.
 Eigenpairs extreme_eigenpairs(const LowerMatrix& inner, const SelfAdjoint& apply,
                               Eigen::MatrixXd start, const WantedEigenvalues& wanted);
 
-// Numbers between -1 and 1, the same in every run: a block to start from.
+// Numbers between -1 and 1, the same on every machine: a block to start from.
 Eigen::MatrixXd random_block(Eigen::Index rows, Eigen::Index columns);
 
 }  // namespace codesign::fem

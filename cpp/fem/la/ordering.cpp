@@ -159,21 +159,31 @@ void find_neighbors(const TetMesh& mesh, const Incidence& elements, NodePattern&
   }
 }
 
+// Positions, neighbours and equations of nodes in their order.
+void number(const TetMesh& mesh, const Constraints& constraints, NodePattern& pattern) {
+  set_positions(at(static_cast<int>(mesh.nodes.rows())), pattern);
+  find_neighbors(mesh, elements_of_nodes(mesh, kTetNodes), pattern);
+  number_equations(constraints, pattern);
+}
+
 }  // namespace
 
-NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
-                        VertexOrdering method) {
+NodePattern fill_reducing_order(const TetMesh& mesh, const Constraints& constraints,
+                                VertexOrdering method) {
   const std::vector<int> key = node_keys(mesh, vertex_ranks(mesh, constraints, method));
-  const Incidence elements = elements_of_nodes(mesh, kTetNodes);
   NodePattern pattern;
   for (int v = 0; v < mesh.nodes.rows(); ++v) {
     if (has_free_component(constraints, v)) pattern.order.push_back(v);
   }
   std::stable_sort(pattern.order.begin(), pattern.order.end(),
                    [&](int a, int b) { return key[at(a)] < key[at(b)]; });
-  set_positions(key.size(), pattern);
-  find_neighbors(mesh, elements, pattern);
+  number(mesh, constraints, pattern);
+  return pattern;
+}
 
+NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
+                        VertexOrdering method) {
+  NodePattern pattern = fill_reducing_order(mesh, constraints, method);
   Elimination elimination =
       analyze(pattern.start, pattern.neighbor, free_components(constraints, pattern.order));
   std::vector<int> order;
@@ -181,9 +191,7 @@ NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
   for (const int k : elimination.order) order.push_back(pattern.order[at(k)]);
   pattern.order = std::move(order);
   pattern.supernodes = std::move(elimination.supernodes);
-  set_positions(key.size(), pattern);
-  find_neighbors(mesh, elements, pattern);
-  number_equations(constraints, pattern);
+  number(mesh, constraints, pattern);
   return pattern;
 }
 

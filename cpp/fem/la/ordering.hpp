@@ -27,9 +27,13 @@ struct NodePattern {
 enum class VertexOrdering { automatic, minimum_degree, nested_dissection };
 
 // Fill-reducing order: only corner vertices are ordered (minimum degree, or nested dissection for
-// large meshes); each mid-edge node goes just before the earlier eliminated of its two ends. The
-// order is then made one of the amalgamated supernodes' tree. Ordering the corners alone costs a
-// tenth to a thirtieth of ordering all nodes and keeps the fill.
+// large meshes); each mid-edge node goes just before the earlier eliminated of its two ends.
+// Ordering the corners alone costs a tenth to a thirtieth of ordering all nodes and keeps the fill.
+// The pattern has no supernodes.
+NodePattern fill_reducing_order(const TetMesh& mesh, const Constraints& constraints,
+                                VertexOrdering method = VertexOrdering::automatic);
+
+// The fill-reducing order made one of the amalgamated supernodes' tree.
 NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
                         VertexOrdering method = VertexOrdering::automatic);
 

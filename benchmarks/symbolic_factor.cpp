@@ -1,0 +1,156 @@
+// Our symbolic factorization of the nodes against cholmod_analyze_p of the equations in the same
+// order, on a model that benchmarks/symbolic_factor.py has written:
+//   benchmark_symbolic_factor MODEL REPEATS
+// Prints one line of JSON: CPU seconds (least of REPEATS, the two in turns) and sizes.
+#include "fem/la/symbolic_factor.hpp"
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "fem/elasticity/stiffness.hpp"
+
+extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
+
+namespace {
+
+using namespace codesign::fem;
+
+struct Times {
+  double analysis = std::numeric_limits<double>::infinity(), factor = analysis, solve = analysis;
+};
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+template <typename Action>
+auto timed(double& least, Action action) {
+  const double start = cpu_seconds();
+  auto result = action();
+  least = std::min(least, cpu_seconds() - start);
+  return result;
+}
+
+struct Model {
+  TetMesh mesh;
+  Constraints constraints;
+};
+
+Model read(const char* path) {
+  std::ifstream file(path);
+  Eigen::Index nodes = 0, tets = 0;
+  file >> nodes >> tets;
+  Model model;
+  model.mesh.nodes.resize(nodes, 3);
+  model.mesh.tets.resize(tets, 10);
+  for (double& x : model.mesh.nodes.reshaped<Eigen::RowMajor>()) file >> x;
+  for (int& node : model.mesh.tets.reshaped<Eigen::RowMajor>()) file >> node;
+  model.constraints.fixed.resize(static_cast<std::size_t>(3 * nodes));
+  for (char& fixed : model.constraints.fixed) {
+    int value = 0;
+    file >> value;
+    fixed = static_cast<char>(value);
+  }
+  if (!file) throw std::runtime_error("not a model");
+  return model;
+}
+
+struct Common : cholmod_common {
+  Common() : cholmod_common() {
+    cholmod_start(this);
+    supernodal = CHOLMOD_SUPERNODAL;
+    nmethods = 1;
+    method[0].ordering = CHOLMOD_GIVEN;
+    quick_return_if_not_posdef = 1;
+  }
+  ~Common() { cholmod_finish(this); }
+};
+
+// Numeric factor and solution with a symbolic factor, which is freed.
+Eigen::VectorXd solve(cholmod_sparse& a, cholmod_factor* factor, Common& common, Times& times,
+                      double& entries) {
+  timed(times.factor, [&] { return cholmod_factorize(&a, factor, &common); });
+  if (common.status != CHOLMOD_OK) throw std::runtime_error("no factor");
+  entries = static_cast<double>(factor->xsize);
+  cholmod_dense* ones = cholmod_ones(a.nrow, 1, CHOLMOD_REAL, &common);
+  cholmod_dense* x =
+      timed(times.solve, [&] { return cholmod_solve(CHOLMOD_A, factor, ones, &common); });
+  const Eigen::VectorXd result = Eigen::Map<const Eigen::VectorXd>(
+      static_cast<const double*>(x->x), static_cast<Eigen::Index>(a.nrow));
+  cholmod_free_dense(&x, &common);
+  cholmod_free_dense(&ones, &common);
+  cholmod_free_factor(&factor, &common);
+  return result;
+}
+
+// A matrix as CHOLMOD sees it.
+cholmod_sparse view(LowerMatrix& matrix) {
+  cholmod_sparse a{};
+  a.nrow = a.ncol = static_cast<std::size_t>(matrix.size());
+  a.nzmax = matrix.row.size();
+  a.p = matrix.start.data();
+  a.i = matrix.row.data();
+  a.x = matrix.value.data();
+  a.stype = -1;
+  a.itype = CHOLMOD_INT;
+  a.xtype = CHOLMOD_REAL;
+  a.dtype = CHOLMOD_DOUBLE;
+  a.sorted = a.packed = 1;
+  return a;
+}
+
+Eigen::VectorXd nodal(const NodePattern& pattern, const Eigen::VectorXd& x) {
+  return nodal_columns(pattern, x).col(0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  const Model model = read(argv[1]);
+  const Material material{"steel", 200e9, 0.3, 7800.0, 250e6};
+  const NodePattern ordered = fill_reducing_order(model.mesh, model.constraints);
+  const NodePattern grouped = order_nodes(model.mesh, model.constraints);
+  LowerMatrix matrix = assemble_stiffness(model.mesh, material, ordered);
+  LowerMatrix grouped_matrix = assemble_stiffness(model.mesh, material, grouped);
+  cholmod_sparse a = view(matrix), grouped_a = view(grouped_matrix);
+  std::vector<int> natural(a.nrow);
+  std::iota(natural.begin(), natural.end(), 0);
+
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Times ours, theirs;
+  double order = kInfinity, order_and_group = kInfinity, symbolic = kInfinity;
+  double our_entries = 0, their_entries = 0, difference = 0;
+  for (int repeat = 0; repeat < std::atoi(argv[2]); ++repeat) {
+    Common common;
+    timed(order, [&] { return fill_reducing_order(model.mesh, model.constraints); });
+    timed(order_and_group, [&] { return order_nodes(model.mesh, model.constraints); });
+    cholmod_factor* factor = timed(symbolic, [&] { return symbolic_factor(grouped, common); });
+    const Eigen::VectorXd x = solve(grouped_a, factor, common, ours, our_entries);
+    factor = timed(theirs.analysis,
+                   [&] { return cholmod_analyze_p(&a, natural.data(), nullptr, 0, &common); });
+    const Eigen::VectorXd y = solve(a, factor, common, theirs, their_entries);
+    difference = (nodal(grouped, x) - nodal(ordered, y)).norm() / x.norm();
+  }
+  ours.analysis = order_and_group - order + symbolic;
+  const auto print = [](const char* name, const Times& t, double entries) {
+    std::printf(
+        "\"%s\": {\"analysis\": %.5f, \"factor\": %.5f, \"solve\": %.5f, \"entries\": %.0f}, ",
+        name, t.analysis, t.factor, t.solve, entries);
+  };
+  std::printf("{\"equations\": %d, \"order\": %.5f, ", grouped.equations(), order);
+  print("ours", ours, our_entries);
+  print("cholmod", theirs, their_entries);
+  std::printf("\"difference\": %.2e}\n", difference);
+}
