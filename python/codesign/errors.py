@@ -59,3 +59,7 @@ class LibraryError(CodesignError):
 
 class ExportError(CodesignError):
     """A folder that an export may not or cannot be written into."""
+
+
+class FileError(CodesignError):
+    """A file or folder that cannot be read or written; the message names it and the reason."""

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import errno
 import os
+import tempfile
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from codesign.errors import FileError
 
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """A temporary path beside `path`, with its suffix; renamed to it at the end, or removed if the block fails.
 
-    Raises: FileNotFoundError if there is no such folder.
+    Raises: FileNotFoundError if there is no such folder; FileError if `path` is a folder or a device.
     """
     path = Path(path)
+    _refuse_other_kinds(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {path.parent}", str(path))
     temporary = path.with_name(f".{path.stem}.{threading.get_native_id()}.tmp{path.suffix}")  # no two threads share it
@@ -26,6 +30,29 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_target(path: str | os.PathLike[str]) -> None:
+    """Makes the folder of a file to be written and tries it, before work is done whose result would be lost.
+
+    Raises: FileError.
+    """
+    path = Path(path)
+    _refuse_other_kinds(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from None
+
+
+def _refuse_other_kinds(path: Path) -> None:
+    """A folder or a device would be replaced by the file."""
+    if path.is_dir():
+        raise FileError(f"{path}: is a folder; name a file in it")
+    if path.exists() and not path.is_file():
+        raise FileError(f"{path}: is no regular file, cannot be replaced")
 
 
 def write_text(path: str | Path, text: str) -> Path:

@@ -78,7 +78,7 @@ class Words {
   }
 
   // Rest of the current line.
-  void skip_line() { take(std::min(rest_.find('\n'), rest_.size())); }
+  void skip_line() { take(std::min(rest_.find_first_of("\r\n"), rest_.size())); }
 
   int line() const { return line_; }
 
@@ -172,6 +172,13 @@ Corners parse_ascii(std::string_view text) {
   }
   require_count(corners.size() / 3);
   return corners;
+}
+
+// Printable ASCII throughout, as no binary file of some length is.
+bool is_text(std::string_view bytes) {
+  return bytes.size() >= kBinaryHeader && std::all_of(bytes.begin(), bytes.end(), [](char c) {
+           return (c >= ' ' && c <= '~') || (c >= '\t' && c <= '\r');
+         });
 }
 
 struct CoordinateHash {
@@ -279,6 +286,7 @@ void compact(SurfaceMesh& surface) {
 SurfaceMesh parse_stl(std::string_view bytes, double scale) {
   if (!(scale > 0.0) || !std::isfinite(scale))
     throw std::invalid_argument("scale: a positive number of metres per unit is needed");
+  if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);  // byte order mark of a text
   if (bytes.empty()) throw MeshError("the file is empty");
   const bool binary_length =
       bytes.size() >= kBinaryHeader &&
@@ -287,6 +295,9 @@ SurfaceMesh parse_stl(std::string_view bytes, double scale) {
   const bool starts_as_text =
       start != bytes.npos && equal_ignoring_case(bytes.substr(start, 5), "solid");
   const bool has_zero_byte = bytes.substr(0, 1024).find('\0') != bytes.npos;
+  if (!binary_length && !starts_as_text && is_text(bytes.substr(0, 1024)) &&
+      foreign_format(bytes).empty())
+    throw MeshError("a text, but not an ASCII STL, which begins with 'solid'");
   if (!binary_length && !starts_as_text) {
     const std::string foreign = foreign_format(bytes);
     if (!foreign.empty()) throw MeshError("not an STL file but " + foreign);

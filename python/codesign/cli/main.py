@@ -6,6 +6,7 @@ Exit codes: 0 done; 1 ran, but the answer is negative (infeasible, failed design
 from __future__ import annotations
 
 import logging
+import os
 import sys
 from typing import Annotated
 
@@ -15,7 +16,7 @@ from rich.text import Text
 from codesign import __version__
 from codesign.cli.commands import design, doctor, run, stress, study
 from codesign.cli.console import err, out, print_json
-from codesign.errors import CodesignError, LibraryError
+from codesign.errors import CodesignError, FileError, LibraryError
 
 app = typer.Typer(
     no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="markdown"
@@ -46,8 +47,11 @@ def main() -> None:
     command = typer.main.get_command(app)
     try:
         code = command.main(standalone_mode=False)
-    except (CodesignError, ImportError) as problem:
-        error = LibraryError.of(problem) if isinstance(problem, ImportError) else problem
+    except BrokenPipeError:  # whoever read the output has ended
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 1
+    except (CodesignError, ImportError, OSError) as problem:
+        error = _typed(problem)
         if "--json" in sys.argv:
             print_json({"error": {"type": type(error).__name__, "message": str(error)}})
         err.print(Text.assemble((type(error).__name__, "bold red"), f": {error}"), soft_wrap=True)
@@ -63,3 +67,13 @@ def main() -> None:
         err.print("interrupted")
         code = 130
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _typed(problem: CodesignError | ImportError | OSError) -> CodesignError:
+    """The error that a user is told, in one line."""
+    if isinstance(problem, ImportError):
+        return LibraryError.of(problem)
+    if isinstance(problem, OSError):
+        where = f"{problem.filename}: " if problem.filename else ""
+        return FileError(f"{where}{problem.strerror or problem}")
+    return problem

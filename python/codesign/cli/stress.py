@@ -17,6 +17,7 @@ from codesign.cli.stress_mesh import literal_facets, mesh_places
 from codesign.cli.stress_options import StressInputError, parse_acceleration, parse_load, parse_support
 from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
 from codesign.errors import ModelError
+from codesign.files import check_target
 from codesign.parts.load_case import strength_document
 from codesign.units import MILLIMETER
 
@@ -63,7 +64,7 @@ def stress_document(
         smooth: take the file for a tessellation of curved faces and curve its facets back before meshing.
         repair: of a file that bounds no solid as it is (`fem.repair_surface`). simplify: tiny edges before meshing.
 
-    Raises: MeshError, SolverError, StressInputError.
+    Raises: MeshError, SolverError, StressInputError; FileError before anything is computed.
     """
     if not fix or not (load or acceleration):
         raise StressInputError("--fix and --load (or --acceleration): at least one of each is needed")
@@ -81,6 +82,8 @@ def stress_document(
         asked.append(PlacedText(text.rpartition(":")[0].strip(), place, what))
     edge_length = None if edge_length_mm is None else edge_length_mm * MILLIMETER
     exclusion = None if exclusion_mm is None else exclusion_mm * MILLIMETER
+    for target in filter(None, (vtu, png)):
+        check_target(target)
     surface, repaired = load_file(path, scale, repair)
     body = None if acceleration is None else parse_acceleration(acceleration)
     solved = _solve(surface, asked, material, edge_length, exclusion, smooth, simplify, body)

@@ -15,6 +15,8 @@ from codesign.fem.selections import Box, Facing, Holes, NamedFace, Near, Place
 from codesign.parts.materials import named_material
 from codesign.units import GIGA, MEGA
 
+SMALLEST, LARGEST = 1e-30, 1e30  # magnitude of a number: squares and products of a few stay in range
+
 
 class StressInputError(CodesignError, ValueError):
     """An option of `codesign stress` that cannot be used; the message names it and says why."""
@@ -40,6 +42,8 @@ def parse_selection(text: str, scale: float) -> Place:
         x, y, z = _numbers(direction, 3, text)
         if not (x or y or z):
             raise StressInputError(f"selection {text!r}: the direction is zero")
+        if angle and not 0.0 <= _numbers(angle, 1, text)[0] <= 180.0:
+            raise StressInputError(f"selection {text!r}: the angle must be between 0 and 180 degrees")
         return Facing((x, y, z), _numbers(angle, 1, text)[0] if angle else 1.0)
     if kind == "face" and rest.strip():
         name = rest.strip()
@@ -147,6 +151,8 @@ def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:
         values = tuple(float(part) for part in text.split(","))
     except ValueError:
         values = ()
+    if any(value and not SMALLEST <= abs(value) <= LARGEST for value in values if math.isfinite(value)):
+        raise StressInputError(f"{whole!r}: numbers must be between {SMALLEST:g} and {LARGEST:g}, or zero")
     if len(values) != count or not all(math.isfinite(value) for value in values):
         raise StressInputError(f"{whole!r}: expected {count} numbers, found {text.strip()!r}")
     return values

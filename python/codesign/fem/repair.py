@@ -74,6 +74,8 @@ def repair_surface(surface: SurfaceMesh, tolerance: float | None = None) -> tupl
         MeshError: what is wrong, and why it could not be repaired.
         ValueError: a tolerance that is not positive.
     """
+    if not len(surface.triangles):
+        raise MeshError(_fault(surface))
     if tolerance is None:
         tolerance = TOLERANCE * float(np.linalg.norm(np.ptp(surface.points, axis=0)))
     if not (math.isfinite(tolerance) and tolerance > 0.0):

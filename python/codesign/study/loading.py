@@ -93,7 +93,7 @@ def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
 
 def _parse(path: Path) -> RawStudy:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         raise StudyError(f"{path}: cannot be read: {error}") from error
     except tomllib.TOMLDecodeError as error:
@@ -184,7 +184,7 @@ def _function(name: str, path: Path) -> Callable[[Mapping[str, Any]], float]:
     module_name, _, function_name = name.partition(":")
     try:
         module = _load_module(module_name, path.parent)
-    except Exception as error:  # whatever a user's module raises when it is imported
+    except (Exception, SystemExit) as error:  # whatever a user's module raises when it is imported
         raise StudyError(f"{path}: {name!r}: {type(error).__name__}: {error}") from error
     function = getattr(module, function_name, None)
     if not callable(function):
@@ -199,7 +199,7 @@ def _part_class(part: PartConfig, path: Path) -> type[Part]:
         raise StudyError(f"{path}: parts.{part.name}.shape = {part.shape!r}: expected module:Class")
     try:
         module = _load_module(module_name, path.parent)
-    except Exception as error:  # whatever a user's module raises when it is imported
+    except (Exception, SystemExit) as error:  # whatever a user's module raises when it is imported
         raise StudyError(
             f"{path}: parts.{part.name}.shape = {part.shape!r}: {type(error).__name__}: {error}"
         ) from error

@@ -52,7 +52,7 @@ def built_problems(
             if built is not None:
                 yield from _face_problems(part, config, built)
                 yield from _place_problems(part, robot, built)
-        except Exception as error:  # whatever a user's class raises
+        except (Exception, SystemExit) as error:  # whatever a user's class raises
             cause = f"{type(error).__name__}: {error}"
             yield f"parts.{part.name}", f"{part.shape} with options {part.options} cannot be built: {cause}"
 

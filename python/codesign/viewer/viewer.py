@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from codesign.errors import CodesignError, ExecutionError
-from codesign.files import write_text
+from codesign.files import check_target, write_text
 from codesign.problem.design_space import DesignValue
 from codesign.report.compute import compute_detail
 from codesign.report.details import Detail, detail_key, save_detail
@@ -68,6 +68,7 @@ def record(
     packages: tuple[Path, ...] | None = None,
 ) -> Path:
     """Writes one design's flight as a single HTML file with a time line; arguments as for `view`."""
+    check_target(path)
     viewer = view(study, design, run_directory=run_directory, trajectory=trajectory, port=0, packages=packages)
     try:
         return write_text(path, viewer.recording())

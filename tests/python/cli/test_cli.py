@@ -47,6 +47,23 @@ def test_bad_input_is_exit_code_2_and_says_why(arguments, message, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_outputs_are_tried_before_anything_is_computed(tmp_path):
+    arguments = ("stress", "absent.stl", "--fix", "near:0,0,0", "--load", "near:1,0,0: 0 0 1")
+    for option in ("--vtu", "--png"):
+        result = codesign(*arguments, option, str(tmp_path), "--json")
+        assert result.returncode == 2, result.stderr
+        assert json.loads(result.stdout)["error"] == {
+            "type": "FileError",
+            "message": f"{tmp_path}: is a folder; name a file in it",
+        }
+
+
+def test_errors_of_the_file_system_are_one_line(tmp_path):
+    (tmp_path / "file").write_text("")
+    result = codesign("new", "file/study", cwd=tmp_path)
+    assert (result.returncode, result.stderr.strip()) == (2, "FileError: file/study: Not a directory")
+
+
 def test_bad_input_with_json_is_one_document():
     result = codesign("evaluate", "--set", "angle=15", "--json")
     assert result.returncode == 2

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from codesign.files import replacing, write_text
+from codesign.errors import FileError
+from codesign.files import check_target, replacing, write_text
 
 
 def test_a_failure_leaves_the_old_file_and_nothing_beside_it(tmp_path: Path) -> None:
@@ -54,6 +55,24 @@ def test_a_missing_folder_is_named(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=f"there is no folder {tmp_path / 'none'}") as caught:
         write_text(tmp_path / "none" / "page.html", "")
     assert caught.value.filename == str(tmp_path / "none" / "page.html")
+
+
+def test_a_folder_or_a_device_is_never_replaced(tmp_path: Path) -> None:
+    for target, reason in ((tmp_path, "is a folder"), (Path("/dev/null"), "is no regular file")):
+        for write in (check_target, lambda path: write_text(path, "")):
+            with pytest.raises(FileError, match=f"{target}: {reason}"):
+                write(target)
+    assert Path("/dev/null").is_char_device()
+
+
+def test_a_target_is_tried_before_the_work(tmp_path: Path) -> None:
+    file = write_text(tmp_path / "file", "kept")
+    check_target(file)
+    check_target(tmp_path / "new" / "page.html")  # its folder is made
+    with pytest.raises(FileError, match=r"page.html: cannot be written"):
+        check_target(file / "page.html")
+    assert file.read_text() == "kept"
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", "new"]
 
 
 def test_no_other_module_writes_beside_by_hand() -> None:

@@ -191,3 +191,18 @@ def test_engine_names_no_robot():
 def test_study_files_are_valid_toml():
     for name in shipped_studies():
         assert tomllib.loads((STUDIES / name / "study.toml").read_text())["name"] == name
+
+
+def test_a_study_may_begin_with_a_byte_order_mark_and_have_windows_lines(tmp_path):
+    new_study(tmp_path / "plain")
+    new_study(tmp_path / "windows")
+    path = tmp_path / "windows" / "study.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().replace(b"\n", b"\r\n"))
+    assert load_study(path).hash == load_study(tmp_path / "plain").hash
+
+
+def test_a_module_that_exits_is_told(tmp_path):
+    new_study(tmp_path / "study")
+    (tmp_path / "study" / "strut.py").write_text("raise SystemExit(3)\n")
+    with pytest.raises(StudyError, match=r"parts.strut.shape = 'strut:Strut': SystemExit: 3"):
+        load_study(tmp_path / "study")

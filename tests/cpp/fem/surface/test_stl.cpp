@@ -90,11 +90,24 @@ TEST(Stl, ClosesCracksOfSinglePrecision) {
   EXPECT_NO_THROW(check_surface(surface));
 }
 
+TEST(Stl, TextsOfAllKindsOfLineEndAndByteOrderMarkAreTheSame) {
+  const SurfaceMesh plain = parse_stl(kTetrahedron, 1.0);
+  std::string returns = kTetrahedron;
+  std::replace(returns.begin(), returns.end(), '\n', '\r');
+  for (const std::string& text : {std::string("\xef\xbb\xbf") + kTetrahedron, returns}) {
+    const SurfaceMesh read = parse_stl(text, 1.0);
+    EXPECT_EQ(read.points, plain.points);
+    EXPECT_EQ(read.triangles, plain.triangles);
+  }
+}
+
 TEST(Stl, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(message(""), "the file is empty");
   EXPECT_EQ(message("solid nothing\nendsolid"), "the file holds no triangle");
   EXPECT_EQ(message(binary(0, {})), "the file holds no triangle");
   EXPECT_NE(message("hello").find("neither"), std::string::npos);
+  EXPECT_EQ(message(std::string(100, 'a')),
+            "a text, but not an ASCII STL, which begins with 'solid'");
   EXPECT_EQ(message(binary(5, kTriangles)),
             "binary STL is truncated: the header promises 5 triangles, the file holds 4");
   EXPECT_EQ(message(replaced(kTetrahedron, "vertex 0 1 0", "vertex 0 1,5 0")),
@@ -116,8 +129,8 @@ TEST(Stl, SaysWhatIsWrongAndWhere) {
 }
 
 // Bytes changed, cut and repeated at random: each result is a surface or a MeshError.
-// CODESIGN_FUZZ_RUNS sets the number of files; benchmarks/robustness/fuzz_stl.sh runs many under the
-// sanitizers.
+// CODESIGN_FUZZ_RUNS sets the number of files; benchmarks/robustness/fuzz_stl.sh runs many under
+// the sanitizers.
 TEST(Stl, SurvivesDamagedFiles) {
   std::mt19937 random(7);
   const std::string sources[] = {kTetrahedron, binary(4, kTriangles)};
