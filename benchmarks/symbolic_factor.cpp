@@ -9,13 +9,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <fstream>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "fem/elasticity/stiffness.hpp"
+#include "model_file.hpp"
 
 extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
 
@@ -26,44 +25,6 @@ using namespace codesign::fem;
 struct Times {
   double analysis = std::numeric_limits<double>::infinity(), factor = analysis, solve = analysis;
 };
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-template <typename Action>
-auto timed(double& least, Action action) {
-  const double start = cpu_seconds();
-  auto result = action();
-  least = std::min(least, cpu_seconds() - start);
-  return result;
-}
-
-struct Model {
-  TetMesh mesh;
-  Constraints constraints;
-};
-
-Model read(const char* path) {
-  std::ifstream file(path);
-  Eigen::Index nodes = 0, tets = 0;
-  file >> nodes >> tets;
-  Model model;
-  model.mesh.nodes.resize(nodes, 3);
-  model.mesh.tets.resize(tets, 10);
-  for (double& x : model.mesh.nodes.reshaped<Eigen::RowMajor>()) file >> x;
-  for (int& node : model.mesh.tets.reshaped<Eigen::RowMajor>()) file >> node;
-  model.constraints.fixed.resize(static_cast<std::size_t>(3 * nodes));
-  for (char& fixed : model.constraints.fixed) {
-    int value = 0;
-    file >> value;
-    fixed = static_cast<char>(value);
-  }
-  if (!file) throw std::runtime_error("not a model");
-  return model;
-}
 
 struct Common : cholmod_common {
   Common() : cholmod_common() {
@@ -118,7 +79,7 @@ Eigen::VectorXd nodal(const NodePattern& pattern, const Eigen::VectorXd& x) {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   if (openblas_set_num_threads) openblas_set_num_threads(1);
-  const Model model = read(argv[1]);
+  const Model model = read_model(argv[1]);
   const Material material{"steel", 200e9, 0.3, 7800.0, 250e6};
   const NodePattern ordered = fill_reducing_order(model.mesh, model.constraints);
   const NodePattern grouped = order_nodes(model.mesh, model.constraints);
