@@ -44,6 +44,28 @@ def pose(xyz: Sequence[float] | Matrix = (0.0, 0.0, 0.0), rpy: Sequence[float] |
     return a_T_b
 
 
+def quaternion(R: Matrix) -> Matrix:
+    """Unit quaternions w, x, y, z (..., 4) of rotation matrices (..., 3, 3), w ≥ 0; exact to rounding for all angles.
+
+    The largest component is taken from the diagonal, the others follow from it (Shepperd, 1978).
+    """
+    R = np.asarray(R, dtype=float)
+    trace = np.trace(R, axis1=-2, axis2=-1)[..., None]
+    squares = np.concatenate([1.0 + trace, 1.0 - trace + 2.0 * np.diagonal(R, axis1=-2, axis2=-1)], axis=-1)  # 4 q²
+    skew = [R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]]
+    products = np.zeros((*R.shape[:-2], 4, 4))  # 4 q_i q_j
+    for i in range(3):
+        products[..., 0, i + 1] = products[..., i + 1, 0] = skew[i]
+        for j in range(i):
+            products[..., i + 1, j + 1] = products[..., j + 1, i + 1] = R[..., i, j] + R[..., j, i]
+    diagonal = np.arange(4)
+    products[..., diagonal, diagonal] = squares
+    row = squares.argmax(axis=-1)[..., None, None]
+    q = np.take_along_axis(products, row, axis=-2)[..., 0, :]
+    q = q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return np.asarray(np.where(q[..., :1] < 0.0, -q, q))
+
+
 def inverse(a_T_b: Matrix) -> Matrix:
     """b_T_a (..., 4, 4) of poses (..., 4, 4)."""
     b_T_a = np.zeros_like(a_T_b)

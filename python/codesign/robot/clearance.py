@@ -143,7 +143,7 @@ def link_pieces(robot: RobotDescription, given: Pieces) -> dict[str, list[Matrix
         if name in given:
             pieces[name] = [np.asarray(points, dtype=float) for points in given[name]]
         elif visuals := robot.link(name).visuals:
-            pieces[name] = [_visual_points(name, visual) for visual in visuals]
+            pieces[name] = [shape_points(name, visual) for visual in visuals]
     return pieces
 
 
@@ -162,15 +162,15 @@ def check_interference(
     shapes = link_pieces(robot, pieces or {})
     _require_links(robot, shapes, settings)
     count = len(next(iter(postures.values()))) if postures else 1
-    poses = _posture_poses(robot, postures, count)
+    poses = posture_poses(robot, postures, count)
     limit = settings.report_below_mm * MILLIMETER
-    contacts = _clearances(shapes, poses, _body_pairs(robot, shapes, settings), limit)
+    contacts = pair_clearances(shapes, poses, _body_pairs(robot, shapes, settings), limit)
     plume_shapes = shapes | {jet + PLUME: [_plume_hull(settings.plumes)] for jet in settings.plumes.jets}
     plume_poses = poses | {jet + PLUME: poses[jet] for jet in settings.plumes.jets}
     plume_pairs = [(jet + PLUME, link) for jet in settings.plumes.jets for link in shapes if link != jet]
     plumes = [
         _with_angle(found, plume_shapes, plume_poses)
-        for found in _clearances(plume_shapes, plume_poses, plume_pairs, limit)
+        for found in pair_clearances(plume_shapes, plume_poses, plume_pairs, limit)
     ]
     nearest = (min((c.distance for c in found), default=limit) for found in (contacts, plumes))
     return InterferenceReport(tuple(contacts), tuple(plumes), *nearest)
@@ -233,13 +233,13 @@ def _body_pairs(
     return [(order[i], order[j]) for i, j in numbers]
 
 
-def _posture_poses(robot: RobotDescription, postures: Mapping[str, Matrix], count: int) -> dict[str, Matrix]:
+def posture_poses(robot: RobotDescription, postures: Mapping[str, Matrix], count: int) -> dict[str, Matrix]:
     """root_T_link (count, 4, 4) of every link."""
     poses = robot.frame_poses(postures)
     return {name: np.broadcast_to(pose, (count, 4, 4)) for name, pose in poses.items()}
 
 
-def _clearances(
+def pair_clearances(
     shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix], pairs: Sequence[tuple[str, str]], limit: float
 ) -> list[Clearance]:
     """Smallest signed distance of each pair over all postures, where it is below `limit`; nearest first."""
@@ -362,16 +362,20 @@ def _sphere_points() -> Matrix:
     return np.vstack([_ring(np.sqrt(1.0 - z * z), z) for z in heights])
 
 
-def _visual_points(link: str, visual: yourdfpy.Visual) -> Matrix:
-    shape = visual.geometry
+def shape_points(link: str, drawn: yourdfpy.Visual | yourdfpy.Collision, radius_scale: float = 1.0) -> Matrix:
+    """Points (n, 3) of a primitive shape of a link, link axes [m]; rounds are polygons in the circle, times a scale.
+
+    Raises: UrdfError if the shape is a mesh.
+    """
+    shape = drawn.geometry
     if shape.box is not None:
         points = np.array(list(product((-0.5, 0.5), repeat=3))) * shape.box.size
     elif shape.cylinder is not None:
         half = 0.5 * shape.cylinder.length
-        points = np.vstack([_ring(shape.cylinder.radius, z) for z in (-half, half)])
+        points = np.vstack([_ring(radius_scale * shape.cylinder.radius, z) for z in (-half, half)])
     elif shape.sphere is not None:
-        points = shape.sphere.radius * _sphere_points()
+        points = radius_scale * shape.sphere.radius * _sphere_points()
     else:
         raise UrdfError(f"link {link}: its shape is a mesh; give its convex pieces")
-    origin = np.eye(4) if visual.origin is None else visual.origin
+    origin = np.eye(4) if drawn.origin is None else drawn.origin
     return np.asarray(points @ origin[:3, :3].T + origin[:3, 3])

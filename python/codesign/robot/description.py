@@ -160,6 +160,15 @@ class RobotDescription:
             for mesh in link.iter("mesh")
         ]
 
+    def material_colors(self) -> dict[str, tuple[float, ...]]:
+        """Material -> red, green, blue, alpha (0 to 1), of every material with a color."""
+        colors = {}
+        for material in self._xml.iter("material"):
+            color = material.find("color")
+            if color is not None:
+                colors[str(material.get("name"))] = tuple(float(c) for c in str(color.get("rgba")).split())
+        return colors
+
     # ---- editing: each returns a new description
 
     def replace_inertial(self, link: str, inertial: Inertial) -> RobotDescription:

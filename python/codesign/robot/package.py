@@ -8,7 +8,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from xml.sax.saxutils import quoteattr
 
+import trimesh
+
 from codesign.errors import UrdfError
+from codesign.files import write_text
 from codesign.robot.description import RobotDescription
 
 MeshWriter = Callable[[Path], object]
@@ -33,6 +36,46 @@ def resolve_mesh(filename: str, directory: Path | None = None, packages: Sequenc
             return path.resolve()
     where = ", ".join(str(path) for path in inside) or "no search path given"
     raise UrdfError(f"mesh {filename!r}: not found ({where})")
+
+
+def load_mesh(robot: RobotDescription, link: str, filename: str) -> trimesh.Trimesh:
+    """A mesh of a robot, all its bodies as one, in the units of its file.
+
+    Raises: UrdfError naming the link if it is not found or cannot be read.
+    """
+    try:
+        path = resolve_mesh(filename, robot.directory)
+        return trimesh.load(path, force="mesh")
+    except UrdfError as error:
+        raise UrdfError(f"link {link}: {error}") from error
+    except (ValueError, KeyError, IndexError, OSError, ImportError) as error:
+        raise UrdfError(f"link {link}: mesh {filename!r} cannot be read: {error}") from error
+
+
+def with_obj_meshes(robot: RobotDescription) -> RobotDescription:
+    """The robot with every mesh as OBJ, which all simulators read; written beside the files of other formats.
+
+    Its meshes must have paths relative to the robot's folder, as `write_urdf_package` gives them.
+
+    Raises: UrdfError if a mesh is not found beside the robot or cannot be read.
+    """
+    renamed: dict[str, str] = {}
+    for link, filename in robot.mesh_filenames():
+        if filename in renamed or filename.lower().endswith(".obj"):
+            continue
+        mesh = load_mesh(robot, link, filename)
+        path = resolve_mesh(filename, robot.directory)
+        target = path.with_name(_unique_name(f"{path.stem}.obj", renamed))
+        write_text(target, _obj_text(mesh))
+        renamed[filename] = "".join(filename.rpartition("/")[:2]) + target.name
+    return robot.with_mesh_filenames(renamed)
+
+
+def _obj_text(mesh: trimesh.Trimesh) -> str:
+    """Wavefront OBJ; coordinates read back exactly."""
+    vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.vertices.tolist()]
+    faces = [f"f {a} {b} {c}" for a, b, c in (mesh.faces + 1).tolist()]
+    return "\n".join([*vertices, *faces, ""])
 
 
 def _candidates(filename: str, directory: Path | None, packages: Sequence[Path]) -> list[tuple[Path, Path]]:
