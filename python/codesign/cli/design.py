@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +13,9 @@ import numpy as np
 from codesign import _core, fem
 from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields, stress_settings
 from codesign.cli.export_folder import MANIFEST, export_folder, files_in
+from codesign.cli.export_formats import CAD, DEFAULT, LOG, ROBOT
 from codesign.cli.order import Order
+from codesign.cli.robot_files import write_robot_files
 from codesign.errors import DesignError
 from codesign.fem.vtu import StressModel, write_vtu
 from codesign.files import write_text
@@ -23,7 +25,6 @@ from codesign.parts.load_case import part_case
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignValue, value_text
 from codesign.report.study_words import part_words
-from codesign.robot.package import write_urdf_package
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
@@ -37,15 +38,17 @@ def export_design(
     chosen: str = "",
     organization: str = "",
     force: bool = False,
+    formats: Sequence[str] = DEFAULT,
 ) -> list[Path]:
     """Evaluates a design and writes its files into a folder (made if absent); returns their paths.
 
     `README.md`, `manifest.json`, `bom.csv`: what it is, of what, how many, in which units. `evaluation.json`: all
     numbers. `cad/`: STL and STEP of each part and its mirror image, 3MF of all pieces side by side; GLB and STEP
-    assembly of all of them in their places on the robot. `robot/`: URDF with meshes. `stress/`: VTU of each part.
+    assembly of all of them in their places on the robot. `robot/`: URDF with meshes; MJCF, SDF and the history of the
+    flight if asked for. `stress/`: VTU of each part.
 
     chosen: how the design was found, in words. organization: for the files' headers. force: replace another design's
-    export.
+    export. formats: which of `export_formats.FORMATS` are written.
 
     Raises: DesignError; ExportError if the folder holds something else; CodesignError of the chain.
     """
@@ -53,19 +56,22 @@ def export_design(
     design = study.space.design(theta)
     parts = build_parts(study, design)
     placed = placed_components(study, design, parts)
-    order = Order(study, design, [component for component, _ in placed] + unplaced(study, parts), chosen, organization)
+    order = Order(
+        study, design, [component for component, _ in placed] + unplaced(study, parts), chosen, organization, formats
+    )
     with export_folder(out, order.revision, force) as folder:
         with ThreadPoolExecutor(1) as beside:  # the native chain releases the interpreter's lock
             chain = beside.submit(evaluate_with_fields, study, design)
-            export_parts(
-                order.components, folder / "cad", revision=order.revision, organization=organization or study.title
-            )
-            _write_robot(study, design, placed, folder / "robot")
-            evaluation, analyses, _ = chain.result()
-        models = {
-            name: _write_stress(order, name, parts[name], analysis, folder / "stress")
-            for name, analysis in analyses.items()
-        }
+            _write_cad(order, folder / "cad")
+            evaluation, analyses, flight = chain.result()
+        if any(kind in formats for kind in (*ROBOT, *LOG)):
+            write_robot_files(study, evaluation, placed, flight, formats, folder / "robot")
+        models = {}
+        if "vtu" in formats:
+            models = {
+                name: _write_stress(order, name, parts[name], analysis, folder / "stress")
+                for name, analysis in analyses.items()
+            }
         write_text(folder / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1))
         write_text(folder / "bom.csv", order.bill_of_materials())
         write_text(folder / "README.md", order.page(evaluation, models))
@@ -115,15 +121,11 @@ def unplaced(study: Study, parts: Mapping[str, Part]) -> list[Component]:
     return [Component(name, parts[name], np.eye(4)) for name in names]
 
 
-def _write_robot(study: Study, design: Design, components: list[tuple[Component, str]], folder: Path) -> Path:
-    robot = build_robot(study, design)
-    placements = {place.link: place for part in study.config.parts for place in part.placements}
-    writers = {}
-    for component, link in components:
-        filename = f"{component.part.name}.stl"
-        writers[filename] = component.part.write_stl
-        robot = robot.set_mesh(link, filename, placements[link].link_T_part.matrix(), 1e-3)
-    return write_urdf_package(robot, folder, writers)
+def _write_cad(order: Order, folder: Path) -> None:
+    wanted = [kind for kind in CAD if kind in order.formats]
+    if wanted:
+        organization = order.organization or order.study.title
+        export_parts(order.components, folder, revision=order.revision, organization=organization, formats=wanted)
 
 
 def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnalysis, folder: Path) -> str:

@@ -16,7 +16,12 @@ import codesign
 
 # Import names that differ from the package's; a part of it where the whole would load nothing.
 MODULES = {"cadquery-ocp-novtk": "OCP.gp", "dask": "distributed", "matplotlib": "matplotlib.backends.backend_agg"}
-USES = {"view": "codesign view", "cluster": "--cluster", "analysis": "sensitivity analysis, Parquet export"}
+USES = {
+    "view": "codesign view",
+    "cluster": "--cluster",
+    "analysis": "sensitivity analysis, Parquet export",
+    "log": "flights as MCAP",
+}
 
 
 @dataclass(frozen=True, slots=True)

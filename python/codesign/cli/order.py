@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from codesign import __version__
+from codesign.cli.export_formats import DEFAULT, LOG, ROBOT, units_of
 from codesign.parts.component import Component, distinct_parts
 from codesign.parts.part import MirroredPart, Part
 from codesign.problem.design_space import Design, value_text
@@ -25,16 +26,20 @@ from codesign.units import MEGA
 if TYPE_CHECKING:
     from codesign.chain.study import Study
 
-UNITS = {
-    "cad/*.stl": "mm",
-    "cad/*.step": "mm",
-    "cad/parts.3mf": "mm",
-    "cad/assembly.glb": "m",
-    "robot/*": "m, kg, rad; meshes mm, scaled in the URDF",
-    "stress/*.vtu": "m, Pa",
-    "evaluation.json": "SI; design values as in the study",
-    "bom.csv": "kg, kg/m3",
-}
+STRESS_FILES = (
+    "In `stress/*.vtu`, the peak stress is read where `counts_for_peak` is 1; the strings in the field data say what "
+    "was analyzed.\n"
+)
+ROBOT_FILES = (
+    (ROBOT, "robot.urdf", "links, joints, masses, meshes"),
+    (("mjcf",), "robot.xml", "the same for MuJoCo, with jets as actuators and the start as keyframe"),
+    (("sdf",), "robot.sdf", "the same for Gazebo and Drake, with jets as frames"),
+    (("mjcf", "sdf"), "robot.srdf", "start posture, collisions to be left out"),
+    (("mjcf", "sdf", *LOG), "robot.json", "jets with axes, limits and dynamics, start, controller"),
+    (("csv",), "flight.csv", "the flight that the objectives are of"),
+    (("parquet",), "flight.parquet", "the same, with units as metadata"),
+    (("mcap",), "flight.mcap", "the same as ROS 2 messages"),
+)
 LICENSE = (
     "The license of codesign covers the program, not what is designed with it: the parts belong to the author of the "
     "study, and so does the choice of their license."
@@ -47,7 +52,8 @@ class Order:
     """A design to be made: the study and its values, where they come from, who makes it, and what was computed.
 
     chosen: how the design was found, "design 14 of runs/a"; "" if its values were given. components: parts in their
-    places, one for each piece to be made. models: of each part, what the VTU files in `stress` hold.
+    places, one for each piece to be made. formats: of the files beside these. models: of each part, what the VTU files
+    in `stress` hold.
     """
 
     study: Study
@@ -55,6 +61,7 @@ class Order:
     components: Sequence[Component]
     chosen: str = ""
     organization: str = ""
+    formats: Sequence[str] = DEFAULT
 
     @property
     def revision(self) -> str:
@@ -87,7 +94,7 @@ class Order:
             "objectives": evaluation.objectives,
             "constraints": evaluation.constraints,
             "parts": [self._part(part, evaluation, models) for part in distinct_parts(self.components)],
-            "units": UNITS,
+            "units": units_of(self.formats),
             "not_stated": OPEN,
             "license": LICENSE,
             "files": sorted(files),
@@ -114,8 +121,8 @@ class Order:
             "density_kg_m3": f"{part.density:.10g}",
             "mass_each_kg": f"{mass:.6g}",
             "mass_total_kg": f"{count * mass:.6g}",
-            "step": f"cad/{part.name}.step",
-            "stl": f"cad/{part.name}.stl",
+            "step": self._file(part, "step"),
+            "stl": self._file(part, "stl"),
             "revision": self.revision,
         }
 
@@ -139,7 +146,7 @@ class Order:
         for part in distinct_parts(self.components):
             mirror = f"mirror image of {_original(part).name}" if isinstance(part, MirroredPart) else ""
             mass = f"{part.mass_properties().mass:.4g} kg"
-            files = f"`cad/{part.name}.step`, `.stl`"
+            files = ", ".join(f"`{file}`" for kind in ("step", "stl") if (file := self._file(part, kind)))
             parts.append(
                 [part.name, self.quantities[part.name], self._material_words(part), mass, mirror, files],
             )
@@ -153,20 +160,32 @@ class Order:
                     for words in part_words(study.configured(self.design)).values()
                     if words.warning
                 ),
-                "`bom.csv` is the second table for programs, `manifest.json` all of this. In `cad/parts.3mf` all "
-                "pieces lie side by side, in `cad/assembly.step` and `.glb` in their places on the robot.\n",
+                f"`bom.csv` is the second table for programs, `manifest.json` all of this. {self._cad_words()}\n",
+                *self._robot_words(),
                 "## Strength\n",
                 *_table(
                     ["part", "load case", "model", "safety factor", "peak stress"], self._strength(evaluation, models)
                 ),
-                "In `stress/*.vtu`, the peak stress is read where `counts_for_peak` is 1; the strings in the field "
-                "data say what was analyzed.\n",
+                *([STRESS_FILES] if "vtu" in self.formats else []),
                 "## Units\n",
-                *_table(["files", "units"], [[f"`{files}`", unit] for files, unit in UNITS.items()]),
+                *_table(["files", "units"], [[f"`{files}`", unit] for files, unit in units_of(self.formats).items()]),
                 f"Not stated, to be agreed with the workshop: {OPEN.partition(':')[0]}.\n",
                 f"{LICENSE}\n",
             ]
         )
+
+    def _file(self, part: Part, kind: str) -> str:
+        """Path of a part's file; "" if it is not written."""
+        return f"cad/{part.name}.{kind}" if kind in self.formats else ""
+
+    def _cad_words(self) -> str:
+        assembly = " and ".join(f"`cad/assembly.{kind}`" for kind in ("step", "glb") if kind in self.formats)
+        beside = "In `cad/parts.3mf` all pieces lie side by side. " if "3mf" in self.formats else ""
+        return beside + (f"In {assembly} they are in their places on the robot." if assembly else "")
+
+    def _robot_words(self) -> list[str]:
+        files = [f"`robot/{file}`: {words}" for kinds, file, words in ROBOT_FILES if set(kinds) & set(self.formats)]
+        return ["## Robot\n", *(f"- {line}" for line in files), ""] if files else []
 
     def _strength(self, evaluation: Evaluation, models: Mapping[str, str]) -> list[list[Any]]:
         words = part_words(self.study.configured(self.design))

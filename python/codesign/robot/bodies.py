@@ -22,6 +22,12 @@ def child_joints(robot: RobotDescription) -> dict[str, list[str]]:
     return children
 
 
+def has_mass(robot: RobotDescription, link: str) -> bool:
+    """Whether a link has an inertial with a mass above zero."""
+    inertial = robot.inertial(link)
+    return inertial is not None and inertial.mass > 0.0
+
+
 def depth_first(robot: RobotDescription) -> Iterator[str]:
     """Names of all joints, parents before children, each branch to its end: the order of a nested file."""
     children = child_joints(robot)

@@ -1,7 +1,7 @@
 """Pairs of links whose collision shapes may touch: neighbors, and shapes that overlap where the robot flies.
 
-Robots are drawn and collided with boxes and cylinders that reach into each other. A contact simulator that does not know
-which of them to leave out pushes the robot apart.
+Robots are drawn and collided with boxes and cylinders that reach into each other. A contact simulator that does not
+know which of them to leave out pushes the robot apart.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from itertools import combinations
 
 import numpy as np
+import yourdfpy
 
 from codesign.robot.bodies import child_joints, rigid_bodies
 from codesign.robot.clearance import CYLINDER_SIDES, hull_vertices, pair_clearances, posture_poses, shape_points
@@ -26,8 +27,8 @@ CIRCUMSCRIBED = 1.0 / np.cos(np.pi / CYLINDER_SIDES) ** 2  # polyhedra around ro
 def ignored_pairs(robot: RobotDescription, postures: Mapping[str, Matrix]) -> dict[tuple[str, str], str]:
     """Pairs of links with collision shapes whose contacts mean nothing, in the links' order.
 
-    Adjacent: links of one rigid body, or of two that a moving joint joins. Default: shapes that come nearer than 1 mm in
-    one of the postures. A mesh counts as its convex hull, as in most contact simulators.
+    Adjacent: links of one rigid body, or of two that a moving joint joins. Default: shapes that come nearer than 1 mm
+    in one of the postures. A mesh counts as its convex hull, as in most contact simulators.
 
     postures: joint name -> (n,) positions [rad, m]; joints not named stay at zero.
     Raises: UrdfError if a mesh cannot be found or read.
@@ -55,14 +56,14 @@ def collision_hulls(robot: RobotDescription) -> dict[str, list[Matrix]]:
     return hulls
 
 
-def _points(robot: RobotDescription, link: str, shape: object) -> Matrix:
-    mesh = shape.geometry.mesh  # type: ignore[attr-defined]
+def _points(robot: RobotDescription, link: str, shape: yourdfpy.Collision) -> Matrix:
+    mesh = shape.geometry.mesh
     if mesh is None:
         return shape_points(link, shape, CIRCUMSCRIBED)
     points = hull_vertices(
         load_mesh(robot, link, mesh.filename).vertices * np.ravel(1.0 if mesh.scale is None else mesh.scale)
     )
-    origin = shape.origin  # type: ignore[attr-defined]
+    origin = shape.origin
     return points if origin is None else points @ origin[:3, :3].T + origin[:3, 3]
 
 

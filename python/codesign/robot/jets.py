@@ -18,9 +18,9 @@ COMMANDS = {"integrator": "thrust rate [N/s]", "lag": "thrust [N]", "turbine": "
 def flying_document(robot: RobotDescription, settings: dyn.FlightSettings) -> dict[str, Any]:
     """Jets, start posture, joints and controller of a robot as the flight has them, SI units.
 
-    jets: frame is a link of the URDF; axis, unit vector in it, along which the thrust pushes; reaction: moment about the
-    axis per thrust. joints: in the order of every vector over joints; joints_held: moving joints that the flight keeps at
-    zero. start: of base (pose of the root link in the world), joints and thrusts.
+    jets: frame is a link of the URDF; axis, unit vector in it, along which the thrust pushes; reaction: moment about
+    the axis per thrust. joints: in the order of every vector over joints; joints_held: moving joints that the flight
+    keeps at zero. start: of base (pose of the root link in the world), joints and thrusts.
     """
     pose = settings.base_pose
     held = [name for name in depth_first(robot) if robot.joint(name).type in MOVING and name not in settings.joints]

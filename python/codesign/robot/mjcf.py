@@ -10,10 +10,11 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
 import numpy as np
+import yourdfpy
 
 from codesign import dynamics as dyn
 from codesign.errors import UrdfError
-from codesign.robot.bodies import child_joints, depth_first
+from codesign.robot.bodies import child_joints, depth_first, has_mass
 from codesign.robot.collisions import Pairs
 from codesign.robot.description import MOVING, RobotDescription, number_text
 from codesign.transforms import Matrix, quaternion
@@ -81,13 +82,15 @@ class _Bodies:
             ET.SubElement(element, "site", name=f"{link}_jet")
         for name in self.children[link]:
             joint = self.robot.joint(name)
-            body = ET.SubElement(element, "body", name=joint.child, **_placed(self.robot.joint_origin(name)))
+            body = ET.SubElement(element, "body", {"name": joint.child} | _placed(self.robot.joint_origin(name)))
             if joint.type in MOVING:
                 _append_joint(body, self.robot, name)
             self.fill(body, joint.child)
 
-    def _append_geom(self, element: ET.Element, shape: object, settings: dict[str, str]) -> None:
-        geometry, origin = shape.geometry, shape.origin  # type: ignore[attr-defined]
+    def _append_geom(
+        self, element: ET.Element, shape: yourdfpy.Visual | yourdfpy.Collision, settings: dict[str, str]
+    ) -> None:
+        geometry, origin = shape.geometry, shape.origin
         if geometry.box is not None:
             form = {"type": "box", "size": number_text(0.5 * np.asarray(geometry.box.size, dtype=float))}
         elif geometry.cylinder is not None:
@@ -100,9 +103,9 @@ class _Bodies:
         place = {} if origin is None else _placed(origin)
         ET.SubElement(element, "geom", {**form, **place, "mass": "0", **settings})
 
-    def _mesh(self, mesh: object) -> str:
-        filename = mesh.filename  # type: ignore[attr-defined]
-        scale = number_text(np.broadcast_to(1.0 if mesh.scale is None else mesh.scale, 3))  # type: ignore[attr-defined]
+    def _mesh(self, mesh: yourdfpy.Mesh) -> str:
+        filename = mesh.filename
+        scale = number_text(np.broadcast_to(1.0 if mesh.scale is None else mesh.scale, 3))
         if (filename, scale) not in self.meshes:
             stem = filename.rpartition("/")[2].rpartition(".")[0] or "mesh"
             name = f"{stem}_{len(self.meshes)}" if stem in self.meshes.values() else stem
@@ -111,7 +114,7 @@ class _Bodies:
             ET.SubElement(self.assets, "mesh", name=name, file=filename, scale=scale, inertia="shell")
         return self.meshes[filename, scale]
 
-    def _color(self, material: object) -> dict[str, str]:
+    def _color(self, material: yourdfpy.Material | None) -> dict[str, str]:
         rgba = self.colors.get(getattr(material, "name", None) or "")
         return {} if rgba is None else {"rgba": number_text(rgba)}
 
@@ -122,7 +125,7 @@ def _placed(a_T_b: Matrix) -> dict[str, str]:
 
 def _append_inertial(element: ET.Element, robot: RobotDescription, link: str) -> None:
     inertial = robot.inertial(link)
-    if inertial is None:
+    if inertial is None or not has_mass(robot, link):
         return
     I = inertial.inertia  # noqa: E741
     off = [I[0, 1], I[0, 2], I[1, 2]]

@@ -6,6 +6,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
+from typing import Any, cast
 from xml.sax.saxutils import quoteattr
 
 import trimesh
@@ -45,11 +46,14 @@ def load_mesh(robot: RobotDescription, link: str, filename: str) -> trimesh.Trim
     """
     try:
         path = resolve_mesh(filename, robot.directory)
-        return trimesh.load(path, force="mesh")
+        mesh: Any = trimesh.load(path, force="mesh")
     except UrdfError as error:
         raise UrdfError(f"link {link}: {error}") from error
     except (ValueError, KeyError, IndexError, OSError, ImportError) as error:
         raise UrdfError(f"link {link}: mesh {filename!r} cannot be read: {error}") from error
+    if not len(mesh.faces):
+        raise UrdfError(f"link {link}: mesh {filename!r} has no triangles")
+    return cast(trimesh.Trimesh, mesh)
 
 
 def with_obj_meshes(robot: RobotDescription) -> RobotDescription:

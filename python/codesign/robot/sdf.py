@@ -8,10 +8,12 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 
 import numpy as np
+import yourdfpy
+from numpy.typing import ArrayLike
 
 from codesign import dynamics as dyn
 from codesign.errors import UrdfError
-from codesign.robot.bodies import depth_first, rigid_bodies
+from codesign.robot.bodies import depth_first, has_mass, rigid_bodies
 from codesign.robot.collisions import Pairs
 from codesign.robot.description import MOVING, RobotDescription, number_text
 from codesign.transforms import Matrix, inverse, rpy_from_rotation
@@ -26,7 +28,7 @@ def sdf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pai
     """SDF 1.9 of the free-floating robot, its jets as frames JET_jet and as elements `codesign:jet`.
 
     SDF has no word for a jet, and Gazebo's thruster turns a propeller on a joint: `codesign:jet` names frame, axis and
-    limits as `robot.json` does, and is skipped by readers. `drake:collision_filter_group` leaves out the pairs `ignored`.
+    limits as `robot.json` does, and readers skip it. `drake:collision_filter_group` leaves out the pairs `ignored`.
 
     robot: its meshes with paths relative to where the text will stand (Drake reads OBJ alone).
     Raises: UrdfError for joints that SDF 1.9 cannot say, a moving body without mass, a jet whose frame the robot lacks.
@@ -52,7 +54,7 @@ def host_links(robot: RobotDescription) -> dict[str, str]:
     Where none above has mass, the first one of the body with mass. Raises: UrdfError for a body without any.
     """
     first = rigid_bodies(robot)
-    heavy = {name for name in robot.link_names if robot.inertial(name) is not None}
+    heavy = {name for name in robot.link_names if has_mass(robot, name)}
     heads = {
         body: next((link for link in first if first[link] == body and link in heavy), None) for body in first.values()
     }
@@ -106,7 +108,7 @@ class _Writer:
             frame.append(_pose(self._between(host, name), host))
 
     def _link(self, host: str, at: str, joint: str | None) -> ET.Element:
-        """The link `host`, placed in the joint that carries the link `at`, with the shapes of all links it stands for."""
+        """The link `host`, placed in the joint that carries the link `at`; with the shapes of all it stands for."""
         element = ET.Element("link", name=host)
         if joint is not None:
             element.append(_pose(self._between(at, host), joint))
@@ -168,7 +170,7 @@ def _append_jet(model: ET.Element, robot: RobotDescription, jet: dyn.Actuator) -
     if jet.frame not in robot.link_names:
         raise UrdfError(f"the robot has no jet frame {jet.frame!r}")
     ET.SubElement(model, "frame", {"name": f"{jet.frame}_jet", "attached_to": jet.frame})
-    numbers = {
+    numbers: dict[str, ArrayLike] = {
         "axis": jet.axis,
         "min_thrust_n": jet.thrust_min,
         "max_thrust_n": jet.thrust_max,
@@ -206,9 +208,9 @@ def _shifted(xyz: Matrix) -> Matrix:
     return T
 
 
-def _geometry(geometry: object) -> ET.Element:
+def _geometry(geometry: yourdfpy.Geometry) -> ET.Element:
     element = ET.Element("geometry")
-    box, cylinder, sphere, mesh = (getattr(geometry, kind) for kind in ("box", "cylinder", "sphere", "mesh"))
+    box, cylinder, sphere, mesh = geometry.box, geometry.cylinder, geometry.sphere, geometry.mesh
     if box is not None:
         ET.SubElement(ET.SubElement(element, "box"), "size").text = number_text(box.size)
     elif cylinder is not None:

@@ -12,7 +12,7 @@ GROUP, START = "flown", "start"
 
 
 def srdf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pairs) -> str:
-    """SRDF: group "flown" of the flight's joints, its state "start", a floating base, `disable_collisions` of the pairs.
+    """SRDF: group "flown" of the flight's joints, its state "start", a floating base, `disable_collisions`.
 
     Where the base starts is not part of an SRDF.
     """

@@ -6,24 +6,30 @@ import json
 from pathlib import Path
 
 import msgspec
+import mujoco
+import pyarrow.parquet as parquet
 import pytest
 
 import synthetic_run
 from codesign.chain.study import load_study
 from codesign.cli.design import design_of_run, export_design, unplaced
 from codesign.cli.export_folder import MANIFEST, export_folder
-from codesign.errors import CodesignError, DesignError, ExportError
+from codesign.cli.export_formats import CAD, DEFAULT, FORMATS, parse_formats, units_of
+from codesign.errors import CodesignError, DesignError, ExportError, LibraryError
 from codesign.parts.step import SCHEMAS
 from vtu_files import read_vtu
 
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
+KINDS = (*DEFAULT, "mjcf", "sdf", "parquet")
 PARTS = {"jetpack_bracket": 2, "forearm_support": 1, "forearm_support_mirrored": 1}
 
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("export") / "order"
-    written = export_design(load_study("ironcub"), DESIGN, folder, chosen="design 7 of a", organization="workshop")
+    written = export_design(
+        load_study("ironcub"), DESIGN, folder, chosen="design 7 of a", organization="workshop", formats=KINDS
+    )
     assert sorted(written) == sorted(path for path in folder.rglob("*") if path.is_file())
     assert not list(folder.parent.glob(".*"))
     return folder
@@ -99,6 +105,76 @@ def test_stress_files_name_their_model(out: Path) -> None:
         counted = file.point_data["von_mises"][file.point_data["counts_for_peak"] == 1]
         assert 0.95 * numbers["peak_stress"] < counted.max() < 1.001 * numbers["peak_stress"]
         assert file.point_data["von_mises"].max() > 2.0 * numbers["peak_stress"]  # beside the clamp
+
+
+def test_the_robot_flies_elsewhere_from_the_files_alone(out: Path) -> None:
+    robot = json.loads((out / "robot" / "robot.json").read_text())
+    evaluation = json.loads((out / "evaluation.json").read_text())
+    assert robot["objectives"] == evaluation["objectives"]
+    assert robot["design"] == DESIGN
+    assert [jet["frame"] for jet in robot["jets"]][:2] == ["l_arm_jet_turbine", "r_arm_jet_turbine"]
+    for jet in robot["jets"]:
+        assert jet["axis"] == [0.0, 0.0, -1.0]
+        assert (jet["thrust_min"], jet["thrust_max"], jet["thrust_rate_max"]) == (0.0, 250.0, 200.0)
+        assert jet["dynamics"] == {"kind": "integrator", "command": "thrust rate [N/s]"}
+    assert robot["joints_held"] == ["neck_pitch", "neck_roll", "neck_yaw"]
+    assert robot["start"]["joints"]["l_elbow"] == 0.2618
+    assert robot["start"]["base_position"] == [0.0, 0.0, 0.8]
+    assert robot["plant"] == {"integrator": "euler", "substeps": 1}
+    gains = robot["controller"]["gains"]
+    assert gains["attitude_proportional"] == 50.0
+    assert len(gains["posture"]) == len(robot["joints"]) == 23
+    model = mujoco.MjModel.from_xml_path(str(out / "robot" / "robot.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
+    mujoco.mj_forward(model, data)
+    assert data.ncon == 0
+    assert robot["mass"] == pytest.approx(model.body_subtreemass[1], rel=1e-14)
+    flight = parquet.read_table(out / "robot" / "flight.parquet")
+    assert flight.num_rows == 5251
+    assert flight.schema.metadata[b"angle"] == b"15"
+    assert (out / "robot" / "robot.srdf").is_file()
+    page = (out / "README.md").read_text()
+    assert "`robot/robot.xml`: the same for MuJoCo" in page
+    assert "flight.csv" not in page
+
+
+def test_formats_by_name() -> None:
+    assert parse_formats(",".join(DEFAULT)) == tuple(kind for kind in FORMATS if kind in DEFAULT)
+    assert parse_formats("all") == FORMATS
+    assert parse_formats(" STL, log,stl") == ("stl", "csv", "parquet")
+    with pytest.raises(ExportError, match="no format 'mjfc'; did you mean 'mjcf'"):
+        parse_formats("stl,mjfc")
+    with pytest.raises(ExportError, match="name at least one"):
+        parse_formats(" ,")
+    assert "robot/flight.*" not in units_of(DEFAULT)
+    assert set(units_of(("csv",))) == {"robot/flight.*", "evaluation.json", "bom.csv"}
+    assert set(CAD) < set(FORMATS)
+
+
+def test_a_missing_library_is_said_before_anything_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(LibraryError, match=r"parquet needs pyarrow, .*codesign\[analysis\]"):
+        parse_formats("log")
+    assert parse_formats("csv") == ("csv",)
+
+
+def test_only_the_formats_asked_for(tmp_path: Path) -> None:
+    study = load_study("gimbal_quad")
+    out = tmp_path / "order"
+    files = export_design(study, {"reach": 200, "height": 30}, out, formats=("stl", "csv"))
+    names = {str(path.relative_to(out)) for path in files}
+    assert names == {
+        "cad/strut.stl",
+        "robot/flight.csv",
+        "robot/robot.json",
+        *("README.md", "bom.csv", "evaluation.json", MANIFEST),
+    }
+    (row,) = csv.DictReader((out / "bom.csv").read_text().splitlines())
+    assert (row["step"], row["stl"]) == ("", "cad/strut.stl")
+    page = (out / "README.md").read_text()
+    for absent in (".3mf", ".step", "robot.urdf", ".vtu", ".glb"):
+        assert absent not in page
 
 
 def test_a_part_without_a_place_is_made_once() -> None:

@@ -9,6 +9,7 @@ import typer
 from rich.table import Table
 
 from codesign.cli.console import out, print_confirmations, print_evaluation, print_json, shown
+from codesign.cli.export_formats import DEFAULT, FORMATS, parse_formats
 from codesign.cli.options import (
     DEFAULT_STUDY,
     EXAMPLE_DESIGN,
@@ -85,19 +86,28 @@ def export(
     study: StudyOption = DEFAULT_STUDY,
     organization: Annotated[str, typer.Option(help="For the files' headers; default: the study's title.")] = "",
     force: Annotated[bool, typer.Option("--force", help="Replace the export of another design.")] = False,
+    formats: Annotated[str, typer.Option(help=f"List with commas of {', '.join(FORMATS)}; log; all.")] = ",".join(
+        DEFAULT
+    ),
     as_json: JsonOption = False,
 ) -> int:
-    """What it takes to make and simulate a design: STL, STEP, 3MF, bill of materials, URDF with meshes, VTU, JSON."""
+    """What it takes to make and simulate a design: STL, STEP, 3MF, bill of materials, URDF with meshes, VTU, JSON.
+
+    With --formats also MJCF and SDF with the jets in them, and the flight as CSV, Parquet (log) and MCAP.
+    """
     from codesign.chain.study import load_study
     from codesign.cli.design import design_of_run, export_design
 
     if (run_dir is None) == (not set_):
         raise DesignError("export needs either a design by --set or a run by --run")
+    kinds = parse_formats(formats)
     if run_dir is None:
         loaded, design, chosen = load_study(study), parse_design(set_ or []), ""
     else:
         loaded, design, chosen = design_of_run(run_dir, selector)
-    written = export_design(loaded, design, out_dir, chosen=chosen, organization=organization, force=force)
+    written = export_design(
+        loaded, design, out_dir, chosen=chosen, organization=organization, force=force, formats=kinds
+    )
     if as_json:
         print_json({"files": [str(path) for path in written]})
     else:

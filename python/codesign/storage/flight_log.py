@@ -1,4 +1,4 @@
-"""The history of a flight as a table with named, dimensioned columns: CSV, Parquet, and MCAP for ROS 2 tools."""
+"""The history of a flight as a table with named, dimensioned columns: CSV and Parquet."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -47,9 +47,10 @@ class Column:
         return {key: value for key, value in (("unit", self.unit), ("axes", self.axes), ("of", self.subject)) if value}
 
 
-def flown_columns(log: dyn.FlightLog, settings: dyn.FlightSettings) -> list[Column]:
+def flown_columns(log: dyn.FlightLog, settings: dyn.FlightSettings, slides: Collection[str] = ()) -> list[Column]:
     """All histories of a flight; rotations as quaternions w, x, y, z without jumps of sign.
 
+    slides: joints of the flight that move along their axis, in metres.
     Torque, thrust command and wind of a sample act from it to the next one, the thrust of a sample holds at it.
     """
     jets = [jet.frame for jet in settings.actuators]
@@ -59,15 +60,18 @@ def flown_columns(log: dyn.FlightLog, settings: dyn.FlightSettings) -> list[Colu
     columns += _quaternions("base_quaternion", log.base_rotation)
     columns += _vectors("base_velocity", "m/s", log.velocity[:, :3], WORLD)
     columns += _vectors("base_angular_velocity", "rad/s", log.velocity[:, 3:6], WORLD)
-    columns += _each("joint_position", joints, "rad", log.joint_positions)
-    columns += _each("joint_velocity", joints, "rad/s", log.velocity[:, 6:])
-    columns += _each("joint_torque", joints, "N m", log.torque)
-    columns += _each("joint_velocity_command", joints, "rad/s", log.joint_velocity_command)
-    columns += _each("thrust", jets, "N", log.thrust)
-    for number, jet in enumerate(settings.actuators):
-        unit = COMMAND_UNITS[dynamics_kind(jet)]
-        columns.append(Column("thrust_command", jet.frame, unit, log.thrust_command[:, number]))
-    columns += _each("thrust_rate_command", jets, "N/s", log.thrust_rate_command)
+    angles, rates, torques = (
+        [slide if name in slides else turn for name in joints]
+        for turn, slide in (("rad", "m"), ("rad/s", "m/s"), ("N m", "N"))
+    )
+    columns += _each("joint_position", joints, angles, log.joint_positions)
+    columns += _each("joint_velocity", joints, rates, log.velocity[:, 6:])
+    columns += _each("joint_torque", joints, torques, log.torque)
+    columns += _each("joint_velocity_command", joints, rates, log.joint_velocity_command)
+    columns += _each("thrust", jets, ["N"] * len(jets), log.thrust)
+    commands = [COMMAND_UNITS[dynamics_kind(jet)] for jet in settings.actuators]
+    columns += _each("thrust_command", jets, commands, log.thrust_command)
+    columns += _each("thrust_rate_command", jets, ["N/s"] * len(jets), log.thrust_rate_command)
     columns += _vectors("com", "m", log.com, WORLD)
     columns += _vectors("com_reference", "m", log.com_reference, WORLD)
     columns += _vectors("com_velocity_reference", "m/s", log.com_velocity_reference, WORLD)
@@ -127,5 +131,5 @@ def _quaternions(quantity: str, rotations: Matrix) -> list[Column]:
     return [Column(quantity, "wxyz"[i], "", q[:, i], "world_R_base") for i in range(4)]
 
 
-def _each(quantity: str, names: Sequence[str], unit: str, values: Matrix) -> list[Column]:
-    return [Column(quantity, name, unit, values[:, number]) for number, name in enumerate(names)]
+def _each(quantity: str, names: Sequence[str], units: Sequence[str], values: Matrix) -> list[Column]:
+    return [Column(quantity, name, unit, column) for name, unit, column in zip(names, units, values.T, strict=True)]

@@ -1,0 +1,189 @@
+"""The exported MJCF in MuJoCo is the exported URDF in Pinocchio, and flies as flown."""
+
+import re
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from codesign import dynamics as dyn
+from codesign.robot.description import RobotDescription
+from codesign.robot.mjcf import mjcf_text
+from codesign.transforms import quaternion, rotation_from_rpy
+from exported_robots import ORIGINAL, Exported, export_robot, random_design
+
+POSTURES = 10
+
+
+@pytest.fixture(scope="module", params=ORIGINAL)
+def exported(request, tmp_path_factory) -> Exported:
+    return export_robot(request.param, ORIGINAL[request.param], tmp_path_factory.mktemp("export") / "robot")
+
+
+def load(exported):
+    model = mujoco.MjModel.from_xml_path(str(exported.folder / "robot.xml"))
+    return model, mujoco.MjData(model)
+
+
+def differences(exported: Exported) -> dict[str, float]:
+    """Largest differences between both readers over random postures and poses of the base, joints set by name."""
+    model, data = load(exported)
+    other = pin.buildModelFromUrdf(str(exported.folder / "robot.urdf"), pin.JointModelFreeFlyer())
+    state = other.createData()
+    rng = np.random.default_rng(3)
+    found = {"mass": abs(model.body_subtreemass[1] - pin.computeTotalMass(other))}
+    for _ in range(POSTURES):
+        R, p = rotation_from_rpy(rng.uniform(-3, 3, 3)), rng.uniform(-2, 2, 3)
+        w, x, y, z = quaternion(R)
+        q = pin.neutral(other)
+        q[:7] = [*p, x, y, z, w]
+        data.qpos[:7] = [*p, w, x, y, z]
+        for name in exported.joints:
+            limit = exported.robot.joint(name).limit
+            angle = rng.uniform(limit.lower, limit.upper)
+            q[other.joints[other.getJointId(name)].idx_q] = angle
+            data.joint(name).qpos = angle
+        mujoco.mj_forward(model, data)
+        pin.framesForwardKinematics(other, state, q)
+        pin.ccrba(other, state, q, np.zeros(other.nv))
+        gravity = pin.computeGeneralizedGravity(other, state, q)
+        pairs = {
+            "com": (data.subtree_com[1], pin.centerOfMass(other, state, q)),
+            "inertia": (locked_inertia(model, data), state.Ig.inertia),
+            "frames": tuple(
+                np.array(poses)
+                for poses in zip(
+                    *(
+                        (
+                            np.column_stack([data.body(link).xmat.reshape(3, 3), data.body(link).xpos]),
+                            state.oMf[other.getFrameId(link)].homogeneous[:3],
+                        )
+                        for link in exported.robot.link_names
+                    ),
+                    strict=True,
+                )
+            ),
+            "gravity": (
+                np.array([data.joint(name).qfrc_bias[0] for name in exported.joints]),
+                np.array([gravity[other.joints[other.getJointId(name)].idx_v] for name in exported.joints]),
+            ),
+            "lift": (data.qfrc_bias[:3], R @ gravity[:3]),
+        }
+        for name, (a, b) in pairs.items():
+            found[name] = max(found.get(name, 0.0), float(np.abs(a - b).max()))
+    return found
+
+
+def locked_inertia(model, data):
+    """About the centre of mass, world axes."""
+    total, com = np.zeros((3, 3)), data.subtree_com[1]
+    for i in range(1, model.nbody):
+        R, r = data.ximat[i].reshape(3, 3), data.xipos[i] - com
+        total += R @ np.diag(model.body_inertia[i]) @ R.T + model.body_mass[i] * (r @ r * np.eye(3) - np.outer(r, r))
+    return total
+
+
+def test_masses_frames_and_gravity_are_those_of_the_urdf(exported):
+    assert {name: value for name, value in differences(exported).items() if value > 1e-11} == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("study", ORIGINAL)
+def test_random_designs_agree(study, seed, tmp_path):
+    exported = export_robot(study, random_design(study, seed), tmp_path / "robot", duration=1.0)
+    assert {name: value for name, value in differences(exported).items() if value > 1e-11} == {}
+
+
+def test_the_start_is_in_the_file(exported):
+    model, data = load(exported)
+    settings = exported.settings
+    mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
+    mujoco.mj_forward(model, data)
+    np.testing.assert_array_equal(data.qpos[:3], settings.base_pose[:3, 3])
+    np.testing.assert_allclose(data.xmat[1].reshape(3, 3), settings.base_pose[:3, :3], atol=1e-15)
+    for name in exported.joints:
+        angles = dict(zip(settings.joints, settings.initial_joints, strict=True))
+        assert data.joint(name).qpos[0] == angles.get(name, 0.0)
+        limit = exported.robot.joint(name).limit
+        np.testing.assert_array_equal(model.joint(name).range, [limit.lower, limit.upper])
+    np.testing.assert_array_equal(data.act, settings.initial_thrusts)
+
+
+def test_jets_push_as_flown(exported):
+    model, data = load(exported)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    for jet, thrust in zip(exported.settings.actuators, exported.settings.initial_thrusts, strict=True):
+        actuator = model.actuator(jet.frame)
+        np.testing.assert_array_equal(actuator.actrange, [jet.thrust_min, jet.thrust_max])
+        np.testing.assert_array_equal(actuator.ctrlrange, [-jet.thrust_rate, jet.thrust_rate])
+        assert data.actuator(jet.frame).force[0] == thrust
+        jacobian = np.zeros((3, model.nv))
+        site = model.site(f"{jet.frame}_jet").id
+        mujoco.mj_jacSite(model, data, jacobian, None, site)
+        dense = np.zeros((model.nu, model.nv))
+        mujoco.mju_sparse2dense(dense, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind)
+        moment = dense[actuator.id]
+        axis = data.site_xmat[site].reshape(3, 3) @ jet.axis
+        np.testing.assert_allclose(moment, jacobian.T @ axis, atol=1e-14)
+
+
+def test_no_contacts_where_the_robot_flies(exported):
+    model, data = load(exported)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    assert data.ncon == 0
+    for k in range(0, exported.log.samples, 25):
+        for number, name in enumerate(exported.settings.joints):
+            data.joint(name).qpos = exported.log.joint_positions[k, number]
+        mujoco.mj_forward(model, data)
+        assert data.ncon == 0
+    every = mjcf_text(exported.robot, exported.settings, {})
+    (exported.folder / "colliding.xml").write_text(every)
+    model = mujoco.MjModel.from_xml_path(str(exported.folder / "colliding.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    overlapping = [pair for pair, reason in exported.ignored.items() if reason == "Default"]
+    assert (data.ncon > 0) == bool(overlapping)
+
+
+def test_every_sample_follows_from_the_one_before(exported):
+    """Contacts and limits off, joints that the flight holds fixed; the flight's thrusts and torques held."""
+    settings, log = exported.settings, exported.log
+    text = exported.robot.to_text()
+    for name in set(exported.joints) - set(settings.joints):
+        text = re.sub(rf'(<joint name="{name}" type=)"revolute"', r'\1"fixed"', text)
+    (exported.folder / "flown.xml").write_text(mjcf_text(RobotDescription.from_text(text), settings, exported.ignored))
+    model = mujoco.MjModel.from_xml_path(str(exported.folder / "flown.xml"))
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
+    data = mujoco.MjData(model)
+    steps = round(settings.step / model.opt.timestep)
+    assert steps == settings.substeps
+
+    def state(k):
+        R = log.base_rotation[k]
+        data.qpos[:7] = [*log.base_position[k], *quaternion(R)]
+        data.qvel[:6] = [*log.velocity[k, :3], *(R.T @ log.velocity[k, 3:6])]
+        for number, name in enumerate(settings.joints):
+            data.joint(name).qpos = log.joint_positions[k, number]
+            data.joint(name).qvel = log.velocity[k, 6 + number]
+        return data.qpos.copy(), data.qvel.copy()
+
+    for k in range(1, log.samples - 1, 7):
+        expected = state(k + 1)
+        state(k)
+        for number, jet in enumerate(settings.actuators):
+            assert isinstance(jet.dynamics, dyn.RateIntegrator)
+            data.act[model.actuator(jet.frame).actadr] = log.thrust[k, number]
+            data.ctrl[model.actuator(jet.frame).id] = 0.0
+        for number, name in enumerate(settings.joints):
+            data.ctrl[model.actuator(name).id] = log.torque[k, number]
+        mujoco.mj_step(model, data, steps)
+        np.testing.assert_allclose(data.qpos[:3], expected[0][:3], atol=1e-11)
+        turned = np.sign(data.qpos[3:7] @ expected[0][3:7])
+        np.testing.assert_allclose(turned * data.qpos[3:7], expected[0][3:7], atol=1e-11)
+        np.testing.assert_allclose(data.qpos[7:], expected[0][7:], atol=1e-11)
+        np.testing.assert_allclose(data.qvel, expected[1], atol=1e-9)
