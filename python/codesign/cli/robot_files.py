@@ -12,8 +12,6 @@ import numpy as np
 from codesign import dynamics as dyn
 from codesign.chain.chain import build_robot
 from codesign.chain.flight import find_trajectory, flight_settings
-from codesign.storage.flight_log import flown_columns, flown_metadata, write_csv, write_parquet
-from codesign.storage.flight_mcap import write_mcap
 from codesign.cli.export_formats import LOG, ROBOT
 from codesign.files import write_text
 from codesign.parts.component import Component
@@ -25,6 +23,8 @@ from codesign.robot.mjcf import mjcf_text
 from codesign.robot.package import with_obj_meshes, write_urdf_package
 from codesign.robot.sdf import sdf_text
 from codesign.robot.srdf import srdf_text
+from codesign.storage.flight_log import flown_columns, flown_metadata, write_csv, write_parquet
+from codesign.storage.flight_mcap import write_mcap
 from codesign.transforms import Matrix
 
 if TYPE_CHECKING:

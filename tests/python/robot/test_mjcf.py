@@ -76,7 +76,7 @@ def differences(exported: Exported) -> dict[str, float]:
 
 
 def locked_inertia(model, data):
-    """About the centre of mass, world axes."""
+    """About the center of mass, world axes."""
     total, com = np.zeros((3, 3)), data.subtree_com[1]
     for i in range(1, model.nbody):
         R, r = data.ximat[i].reshape(3, 3), data.xipos[i] - com

@@ -11,9 +11,9 @@ from rosbags.typesys import Stores, get_typestore
 
 from codesign import dynamics as dyn
 from codesign.chain.flight import find_trajectory, flight_settings, joint_names
+from codesign.chain.study import load_study
 from codesign.storage.flight_log import flown_columns, flown_metadata, write_csv, write_parquet
 from codesign.storage.flight_mcap import write_mcap
-from codesign.chain.study import load_study
 from codesign.transforms import quaternion, rotation_about
 
 
