@@ -6,14 +6,15 @@ import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
-
-import trimesh
 
 from codesign.errors import UrdfError
 from codesign.files import write_text
 from codesign.robot.description import RobotDescription
+
+if TYPE_CHECKING:
+    import trimesh
 
 MeshWriter = Callable[[Path], object]
 
@@ -44,6 +45,8 @@ def load_mesh(robot: RobotDescription, link: str, filename: str) -> trimesh.Trim
 
     Raises: UrdfError naming the link if it is not found or cannot be read.
     """
+    import trimesh  # a second to load, needed for meshes alone
+
     try:
         path = resolve_mesh(filename, robot.directory)
         mesh: Any = trimesh.load(path, force="mesh")
@@ -51,9 +54,9 @@ def load_mesh(robot: RobotDescription, link: str, filename: str) -> trimesh.Trim
         raise UrdfError(f"link {link}: {error}") from error
     except (ValueError, KeyError, IndexError, OSError, ImportError) as error:
         raise UrdfError(f"link {link}: mesh {filename!r} cannot be read: {error}") from error
-    if not len(mesh.faces):
+    if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
         raise UrdfError(f"link {link}: mesh {filename!r} has no triangles")
-    return cast(trimesh.Trimesh, mesh)
+    return mesh
 
 
 def with_obj_meshes(robot: RobotDescription) -> RobotDescription:
