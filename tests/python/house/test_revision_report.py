@@ -1,4 +1,4 @@
-"""What benchmarks/revision/against_revision.sh says of two sets of results."""
+"""What benchmarks/against_revision.sh says of two sets of results."""
 
 import importlib.util
 import json

@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
 # Compares what is built here with an earlier revision, on the same Python packages.
 #
-#   benchmarks/revision/against_revision.sh REV
+#   benchmarks/against_revision.sh REV
 #       CPU time of each stage: median of ROUNDS (5) alternating runs, one thread, ratio here / REV, and of REV against
 #       itself (what the machine's noise is)
-#   benchmarks/revision/against_revision.sh --results REV
+#   benchmarks/against_revision.sh --results REV
 #       all numbers of ten designs and of a run of 12 x 3, bit for bit; exit code 1 if any differs (times, hashes and
 #       provenance apart)
 #
 # REV is built in build/revisions/COMMIT, with ccache if it is there. PYTHON: the environment to compare (.venv/bin/python).
 # Leave the sources alone while it runs: workers that load another program than the run are refused.
 set -euo pipefail
-cd "$(dirname "$0")/../.."
+cd "$(dirname "$0")/.."
 kind=times
 if [ "${1:-}" = --results ]; then kind=results; shift; fi
 [ $# = 1 ] || { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" | head -n -1; exit 2; }
