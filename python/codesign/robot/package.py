@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
@@ -16,6 +17,7 @@ from codesign.robot.description import RobotDescription
 if TYPE_CHECKING:
     import trimesh
 
+ROS_NAME = r"[a-z][a-z0-9_]*"  # of packages, REP 144
 MeshWriter = Callable[[Path], object]
 
 
@@ -119,8 +121,12 @@ def write_urdf_package(
         package: name of the ROS package: meshes are then referenced as package://name/meshes/…, and a package.xml is
             written, so that the folder must be named the same to be found; by default they are relative to the URDF.
         packages: where package:// references of the robot are looked for.
-    Raises: UrdfError naming link and mesh if one is missing or outside the search path.
+    Raises: UrdfError naming link and mesh if one is missing or outside the search path, or for a package name that ROS
+    does not take.
     """
+    if package is not None and not re.fullmatch(ROS_NAME, package):
+        plain = re.sub(r"[^a-z0-9]+", "_", package.lower()).strip("_") or "robot"
+        raise UrdfError(f"package name {package!r}: ROS wants lower-case letters, digits and _, such as {plain!r}")
     out_dir = Path(out_dir)
     out_dir.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=out_dir.parent, prefix=f".{out_dir.name}.") as folder:

@@ -93,6 +93,12 @@ def test_package_paths_resolve_from_the_parent_folder(robot, parts, tmp_path):
     assert "<name>flyer</name>" in (tmp_path / "flyer" / "package.xml").read_text()
 
 
+def test_package_names_that_ros_does_not_take_are_refused(robot, parts, tmp_path):
+    with pytest.raises(UrdfError, match=r"'iRonCub-Mk3': ROS wants lower-case .* such as 'ironcub_mk3'"):
+        export(robot, parts, tmp_path / "robot", package="iRonCub-Mk3")
+    assert not list(tmp_path.iterdir())
+
+
 def test_exporting_a_package_again_from_its_own_files(robot, parts, tmp_path):
     first = RobotDescription.load(export(robot, parts, tmp_path / "a", package="a"))
     second = RobotDescription.load(write_urdf_package(first, tmp_path / "b", packages=[tmp_path]))
