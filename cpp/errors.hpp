@@ -28,9 +28,19 @@ struct MeshError : Error {
   using Error::Error;
 };
 
+// A limit of the mesher (work, vertices, time) was reached; the message names limit and place.
+struct MeshLimitError : MeshError {
+  using MeshError::MeshError;
+};
+
 // A linear system that is singular or whose solution misses the residual tolerance.
 struct SolverError : Error {
   using Error::Error;
+};
+
+// An analysis that needs more memory than it may take; the message names both and the remedy.
+struct MemoryLimitError : SolverError {
+  using SolverError::SolverError;
 };
 
 }  // namespace codesign

@@ -288,7 +288,9 @@ void bind_report(py::module_& m) {
             return report.surface_distance < 0.0 ? std::optional<double>()
                                                  : std::optional(report.surface_distance);
           },
-          "m, largest between boundary and surface, both ways; None if not measured");
+          "m, largest between boundary and surface, both ways; None if not measured")
+      .def_readonly("questions", &MeshReport::questions,
+                    "of the refinement about the solid and the size: its work, on any machine");
 }
 
 void bind_tet_mesh(py::module_& m) {
@@ -330,8 +332,8 @@ TetMesh make_tets(const SurfaceMesh& surface,
                   const std::optional<std::variant<double, SizeField>>& edge_length,
                   double feature_angle_deg, double simplify, double facet_distance,
                   double facet_angle_deg, double radius_edge, double sliver_angle_deg,
-                  double flat_angle_deg, bool curved, double time_limit, std::size_t max_vertices,
-                  bool check_intersections) {
+                  double flat_angle_deg, bool curved, double time_limit, std::size_t max_questions,
+                  std::size_t max_vertices, bool check_intersections) {
   const SizeField size = !edge_length ? default_size(surface, {})
                          : std::holds_alternative<double>(*edge_length)
                              ? SizeField{std::get<double>(*edge_length), {}}
@@ -346,6 +348,7 @@ TetMesh make_tets(const SurfaceMesh& surface,
   options.flat_angle = flat_angle_deg * kDegree;
   options.curved = curved;
   options.time_limit = time_limit;
+  options.max_questions = max_questions;
   options.max_vertices = max_vertices;
   options.check_intersections = check_intersections;
   return tetrahedralize(surface, size, options);
@@ -353,6 +356,8 @@ TetMesh make_tets(const SurfaceMesh& surface,
 
 void bind_mesher(py::module_& m) {
   const MeshOptions defaults;
+  m.attr("MAX_QUESTIONS") = defaults.max_questions;
+  m.attr("TIME_LIMIT") = defaults.time_limit;
   m.def("default_size", &default_size, "surface"_a, "edge_length"_a = py::none(),
         py::call_guard<py::gil_scoped_release>(),
         R"(Edge length that follows the local wall thickness.
@@ -374,7 +379,8 @@ Raises:
         "facet_distance"_a = defaults.facet_distance, "facet_angle_deg"_a = 25.0,
         "radius_edge"_a = defaults.radius_edge, "sliver_angle_deg"_a = 12.0,
         "flat_angle_deg"_a = 6.0, "curved"_a = defaults.curved,
-        "time_limit"_a = defaults.time_limit, "max_vertices"_a = defaults.max_vertices,
+        "time_limit"_a = defaults.time_limit, "max_questions"_a = defaults.max_questions,
+        "max_vertices"_a = defaults.max_vertices,
         "check_intersections"_a = defaults.check_intersections,
         py::call_guard<py::gil_scoped_release>(),
         R"(Ten-node tetrahedra of the solid inside a closed surface.
@@ -395,13 +401,15 @@ Args:
     sliver_angle_deg: elements with a smaller dihedral angle are improved where possible.
     flat_angle_deg: flatter boundary elements on one face are removed.
     curved: mid-edge nodes of the boundary on the surface instead of on straight edges.
-    time_limit: processor seconds.
+    time_limit: processor seconds; a safety net, the next two decide on every machine alike.
+    max_questions: of the refinement about the solid and the size (`report.questions`).
     max_vertices: of corner nodes.
     check_intersections: look for triangles that cross each other first.
 
 Raises:
     MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces, of
-        another topology or wrong volume; a limit was reached.
+        another topology or wrong volume.
+    MeshLimitError: a limit was reached; the message says which and, if points crowd, where.
     ValueError: an option out of range.)");
 }
 

@@ -117,7 +117,8 @@ void bind_result(py::module_& m) {
       .def_readwrite("copies", &StaticSettings::copies)
       .def_readwrite("residual_tolerance", &StaticSettings::residual_tolerance)
       .def_readwrite("solver", &StaticSettings::solver)
-      .def_readwrite("memory_limit", &StaticSettings::memory_limit, "bytes for the factor");
+      .def_readwrite("memory_limit", &StaticSettings::memory_limit,
+                     "bytes for matrices and factors");
   py::class_<StaticResult>(m, "StaticResult", "Displacement, stress and safety factor of a part.")
       .def_readonly("displacement", &StaticResult::displacement, "(n, 3) m")
       .def_readonly("stress", &StaticResult::stress, "(n, 6) Pa: xx yy zz xy yz zx")
@@ -171,7 +172,7 @@ void bind_result(py::module_& m) {
       .def("buckling_modes", &StaticSystem::buckling_modes, "displacement"_a, "count"_a,
            py::call_guard<py::gil_scoped_release>());
   m.def("natural_modes", &natural_modes, "mesh"_a, "material"_a, "supports"_a, "count"_a,
-        py::call_guard<py::gil_scoped_release>());
+        "memory_limit"_a = kMemoryLimit, py::call_guard<py::gil_scoped_release>());
 }
 
 }  // namespace

@@ -14,4 +14,6 @@ void bind_static(pybind11::module_& m);  // the same submodule: elasticity, resu
 void bind_evaluate(
     pybind11::module_& m);  // codesign._core.evaluate: meshes, solves, flies in one call
 
+void bind_interrupt(pybind11::module_& m);  // submodule codesign._core.interrupt: Ctrl-C
+
 }  // namespace codesign

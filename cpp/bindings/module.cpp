@@ -2,6 +2,7 @@
 
 #include "bindings/bindings.hpp"
 #include "errors.hpp"
+#include "interrupt.hpp"
 #include "model_error.hpp"
 
 namespace py = pybind11;
@@ -23,14 +24,20 @@ PYBIND11_MODULE(_core, m) {
       raise("UnknownNameError", e);
     } catch (const codesign::UrdfError& e) {
       raise("UrdfError", e);
+    } catch (const codesign::MeshLimitError& e) {
+      raise("MeshLimitError", e);
     } catch (const codesign::MeshError& e) {
       raise("MeshError", e);
+    } catch (const codesign::MemoryLimitError& e) {
+      raise("MemoryLimitError", e);
     } catch (const codesign::ModelError& e) {
       raise("ModelError", e);
     } catch (const codesign::SolverError& e) {
       raise("SolverError", e);
     } catch (const codesign::Error& e) {
       raise("CodesignError", e);
+    } catch (const codesign::Interrupted&) {  // a signal handler's own exception is set already
+      if (PyErr_Occurred() == nullptr) PyErr_SetNone(PyExc_KeyboardInterrupt);
     }
   });
 
@@ -42,4 +49,6 @@ PYBIND11_MODULE(_core, m) {
   codesign::bind_mesh(fem);
   codesign::bind_static(fem);
   codesign::bind_evaluate(m);
+  py::module_ interrupt = m.def_submodule("interrupt", "What Ctrl-C does to long computations.");
+  codesign::bind_interrupt(interrupt);
 }

@@ -11,6 +11,7 @@
 #include "dynamics/objectives.hpp"
 #include "dynamics/plant.hpp"
 #include "dynamics/torque_controller.hpp"
+#include "interrupt.hpp"
 
 namespace codesign::dynamics {
 
@@ -271,6 +272,7 @@ FlightLog Flight::run() {
   if (!update_dynamics()) fail(FailureReason::kSingularMass, 0);
   watch_ = {};
   for (int k = 0; k < samples && log_.status == FlightStatus::kCompleted; ++k) {
+    check_interrupt();
     FailureReason reason = FailureReason::kNotFailed;
     if (!advance_plant(k)) reason = FailureReason::kSingularMass;
     advance_jets(k);
@@ -340,6 +342,7 @@ std::vector<MomentumQp> momentum_qps(const Model& model, const FlightSettings& s
   MomentumTask task(jets, model.joint_count());
   MomentumQp qp(jets + model.joint_count());
   for (int k = 0; k < log.samples; ++k) {
+    check_interrupt();
     const Reference& reference =
         generator.update(command_at(settings.trajectory, k, settings.step));
     if (k % every != 0) continue;

@@ -4,14 +4,22 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "errors.hpp"
+#include "fem/meshing/mesh_watch.hpp"
 #include "model_error.hpp"
 
 namespace codesign::fem {
 
 namespace {
+
+// Corner nodes that an analysis by iteration can afford: measured on tubes and plates of 2 to 4
+// elements across the wall (benchmarks/robustness/limits.py).
+constexpr double kBytesPerVertex = 2.2e4;
 
 using Clock = std::chrono::steady_clock;
 
@@ -41,31 +49,27 @@ Eigen::VectorXd lowest_of(const Eigen::VectorXd& some, const Eigen::VectorXd& ot
   return all.head(std::min<Eigen::Index>(count, all.size()));
 }
 
-// The lowest frequencies of the part; the modes of a symmetric part are symmetric (those of its
-// half) or antisymmetric.
-Eigen::VectorXd frequencies(const PartCase& part, const StaticSystem& system) {
-  const Eigen::VectorXd symmetric = system.natural_modes(part.modes).frequency;
-  const std::vector<Support> turned = antisymmetric_supports(part);
-  if (turned.empty()) return symmetric;
-  const NaturalModes others = natural_modes(system.mesh(), part.material, turned, part.modes);
-  return lowest_of(symmetric, others.frequency, part.modes);
+// The mesher's options for a pass: the time that the passes before have left, and no more vertices
+// than could be solved within the memory limit.
+MeshOptions pass_options(const PartCase& part, double seconds) {
+  MeshOptions options = part.mesh_options;
+  options.measure_distance = false;  // nobody reads it here
+  options.time_limit = std::max(options.time_limit - seconds, 1e-3);
+  const double most = part.settings.memory_limit / kBytesPerVertex;
+  if (most < static_cast<double>(options.max_vertices))
+    options.max_vertices = static_cast<std::size_t>(most);
+  return options;
 }
 
-// The lowest buckling factors of the part, symmetric and antisymmetric modes alike: the load and
-// so the stress are symmetric in both.
-Eigen::VectorXd buckling_factors(const PartCase& part, const StaticSystem& system,
-                                 const Points& displacement) {
-  Eigen::VectorXd found = system.buckling_modes(displacement, part.buckling).factor;
-  const std::vector<Support> turned = antisymmetric_supports(part);
-  if (!turned.empty()) {
-    const BucklingModes others =
-        buckling_modes(system.mesh(), part.material, turned, displacement, part.buckling);
-    found = lowest_of(found, others.factor, part.buckling);
-  }
-  Eigen::VectorXd factors =
-      Eigen::VectorXd::Constant(part.buckling, std::numeric_limits<double>::infinity());
-  factors.head(found.size()) = found;
-  return factors;
+[[noreturn]] void out_of_memory(const PartAnalysis& analysis) {
+  const auto nodes = analysis.mesh.nodes.rows();
+  std::ostringstream text;
+  text << "the process has no memory left ";
+  if (nodes > 0) text << "for the analysis of a mesh of " << nodes << " nodes";
+  if (nodes == 0) text << "for a mesh of the edge length " << analysis.size.base * 1e3 << " mm";
+  text << ": larger elements or a larger memory limit (execution.memory_limit_mib of a study) are "
+          "needed";
+  throw MemoryLimitError(text.str());
 }
 
 // Every load case by one factor, and which of them governs: the first where several are equal.
@@ -88,24 +92,80 @@ void solve_cases(const PartCase& part, const StaticSystem& system, PartAnalysis&
   }
 }
 
+// The lowest buckling factors of each load case, `count` a case, infinity where there are fewer; of
+// the symmetric motions, then those of the antisymmetric ones among them: load and so stress are
+// symmetric in both.
+using CaseFactors = std::vector<Eigen::VectorXd>;
+
+CaseFactors buckling_factors(const PartCase& part, const StaticSystem& system,
+                             const PartAnalysis& analysis) {
+  CaseFactors factors;
+  for (const StaticResult& result : analysis.results)
+    factors.push_back(system.buckling_modes(result.displacement, part.buckling).factor);
+  return factors;
+}
+
+void add_antisymmetric_factors(const PartCase& part, const std::vector<Support>& turned,
+                               const PartAnalysis& analysis, CaseFactors& factors) {
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const BucklingModes others =
+        buckling_modes(analysis.mesh, part.material, turned, analysis.results[i].displacement,
+                       part.buckling, part.settings.memory_limit);
+    factors[i] = lowest_of(factors[i], others.factor, part.buckling);
+  }
+}
+
+// Those of the case that buckles first.
+Eigen::VectorXd least_factors(const CaseFactors& factors, int count) {
+  Eigen::VectorXd least;
+  for (const Eigen::VectorXd& found : factors) {
+    Eigen::VectorXd filled =
+        Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity());
+    filled.head(found.size()) = found;
+    if (least.size() == 0 || filled[0] < least[0]) least = std::move(filled);
+  }
+  return least;
+}
+
+// The factor of the symmetric motions gives way to that of the antisymmetric ones.
+void solve(const PartCase& part, PartAnalysis& analysis) {
+  CaseFactors factors;
+  {
+    const StaticSystem system(analysis.mesh, part.material, part.supports, part.settings);
+    solve_cases(part, system, analysis);
+    if (part.modes > 0) analysis.frequencies = system.natural_modes(part.modes).frequency;
+    if (part.buckling > 0) factors = buckling_factors(part, system, analysis);
+  }
+  const std::vector<Support> turned = antisymmetric_supports(part);
+  if (!turned.empty() && part.modes > 0) {
+    const NaturalModes others =
+        natural_modes(analysis.mesh, part.material, turned, part.modes, part.settings.memory_limit);
+    analysis.frequencies = lowest_of(analysis.frequencies, others.frequency, part.modes);
+  }
+  if (!turned.empty()) add_antisymmetric_factors(part, turned, analysis, factors);
+  if (part.buckling > 0) analysis.buckling_factors = least_factors(factors, part.buckling);
+}
+
 // One mesh and its solution; times are added to those of the passes before.
-void run_pass(const PartCase& part, PartAnalysis& analysis) {
+void run_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) try {
   const Clock::time_point start = Clock::now();
-  MeshOptions options = part.mesh_options;
-  options.measure_distance = false;  // nobody reads it here
-  analysis.mesh = tetrahedralize(part.surface, analysis.size, options);
+  const double before = thread_seconds();
+  const MeshOptions options = pass_options(part, mesher_seconds);
+  try {
+    analysis.mesh = tetrahedralize(part.surface, analysis.size, options);
+  } catch (const MeshLimitError& error) {
+    if (options.max_vertices == part.mesh_options.max_vertices) throw;
+    throw MeshLimitError(std::string(error.what()) +
+                         " (max_vertices is what can be solved within " +
+                         "the memory limit, fem.memory_limit_mib of a study)");
+  }
+  mesher_seconds += thread_seconds() - before;
   analysis.mesh_seconds += seconds_since(start);
   const Clock::time_point meshed = Clock::now();
-  const StaticSystem system(analysis.mesh, part.material, part.supports, part.settings);
-  solve_cases(part, system, analysis);
-  if (part.modes > 0) analysis.frequencies = frequencies(part, system);
-  for (std::size_t i = 0; part.buckling > 0 && i < analysis.results.size(); ++i) {
-    Eigen::VectorXd factors = buckling_factors(part, system, analysis.results[i].displacement);
-    if (i == 0 || factors[0] < analysis.buckling_factors[0]) {
-      analysis.buckling_factors = std::move(factors);
-    }
-  }
+  solve(part, analysis);
   analysis.solve_seconds += seconds_since(meshed);
+} catch (const std::bad_alloc&) {
+  out_of_memory(analysis);
 }
 
 }  // namespace
@@ -128,7 +188,8 @@ PartAnalysis analyse_part(const PartCase& part) {
   }
   PartAnalysis analysis;
   analysis.size = part.size;
-  run_pass(part, analysis);
+  double mesher_seconds = 0.0;  // of the processor, all passes
+  run_pass(part, mesher_seconds, analysis);
   const auto within = [&](const PartAnalysis& a) {
     return std::max(a.result().stress_error, a.change * a.result().peak_stress) <=
            part.tolerance * a.result().peak_stress;
@@ -142,7 +203,7 @@ PartAnalysis analyse_part(const PartCase& part) {
     finer.mesh_seconds = analysis.mesh_seconds;
     finer.solve_seconds = analysis.solve_seconds;
     try {
-      run_pass(part, finer);
+      run_pass(part, mesher_seconds, finer);
     } catch (const std::runtime_error& error) {  // MeshError or SolverError: too many elements, say
       analysis.converged = false;
       analysis.stopped = error.what();

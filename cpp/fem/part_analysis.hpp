@@ -57,7 +57,8 @@ struct PartAnalysis {
 };
 
 // Surface to safety factor. With refinements allowed, elements around the peak are halved at least
-// once, until estimated error and change are within the tolerance. Throws MeshError, SolverError,
+// once, until estimated error and change are within the tolerance; the mesher's time limit covers
+// all passes. Throws MeshError, SolverError (MemoryLimitError, for want of memory too),
 // std::invalid_argument (unknown face); if only a refined pass fails, the last result stands.
 PartAnalysis analyse_part(const PartCase& part);
 

@@ -35,8 +35,16 @@ class ModelError(CodesignError, ValueError):
     """Supports or loads that make no sense for a part; the message names what, why and the remedy."""
 
 
+class MeshLimitError(MeshError):
+    """A limit of the mesher (work, vertices, time) was reached; the message names the limit and the place."""
+
+
 class SolverError(CodesignError):
     """A linear system that is singular or whose solution misses the residual tolerance."""
+
+
+class MemoryLimitError(SolverError):
+    """An analysis that needs more memory than it may take; the message names both and the remedy."""
 
 
 class StoreError(CodesignError):

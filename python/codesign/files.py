@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from codesign.errors import FileError
+from codesign.interrupts import temporary
 
 
 @contextmanager
@@ -23,13 +24,24 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     _refuse_other_kinds(path)
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"there is no folder {path.parent}", str(path))
-    temporary = path.with_name(f".{path.stem}.{threading.get_native_id()}.tmp{path.suffix}")  # no two threads share it
-    temporary.unlink(missing_ok=True)  # of a writer that was killed
-    try:
-        yield temporary
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    name = f".{path.stem}.{threading.get_native_id()}.tmp{path.suffix}"  # no two threads share it
+    with temporary(path.with_name(name)) as beside:
+        beside.unlink(missing_ok=True)  # of a writer that was killed
+        try:
+            yield beside
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def temporary_folder(path: Path) -> Iterator[Path]:
+    """A new folder beside `path`, removed with all that is in it at the end."""
+    with (
+        tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as name,
+        temporary(Path(name)) as folder,
+    ):
+        yield folder
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
@@ -62,6 +74,6 @@ def write_text(path: str | Path, text: str) -> Path:
 
 def write_bytes(path: str | Path, content: bytes) -> Path:
     """Writes bytes; a reader never sees a half-written file, and a failure leaves the old one. Returns the path."""
-    with replacing(path) as temporary:
-        temporary.write_bytes(content)
+    with replacing(path) as beside:
+        beside.write_bytes(content)
     return Path(path)

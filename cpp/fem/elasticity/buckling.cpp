@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "fem/boundary/rigid_motions.hpp"
+#include "fem/elasticity/nodal_matrices.hpp"
 #include "fem/elasticity/stiffness.hpp"
 #include "fem/la/block_krylov.hpp"
+#include "fem/la/lobpcg.hpp"
 #include "fem/mesh/tet10.hpp"
 #include "fem/stress/stress.hpp"
+#include "interrupt.hpp"
 
 namespace codesign::fem {
 
@@ -51,6 +54,7 @@ double stress_of_mode(const TetMesh& mesh, const Eigen::VectorXd& shape) {
   double squares = 0.0;
   TetPoints points;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
+    check_interrupt();
     const TetNodes x = tet_nodes(mesh, e), u = tet_displacements(mesh, e, shape);
     evaluate_tet(x, stiffness_rule(x), points);
     for (int q = 0; q < points.count; ++q) {
@@ -85,11 +89,10 @@ void read_modes(const TetMesh& mesh, const NodePattern& pattern, const Eigenpair
   if (crowded && pairs.values[most - 1] > negligible) modes.limit = 1.0 / pairs.values[most - 1];
 }
 
-}  // namespace
-
-BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
-                                 const NodePattern& pattern, const CholeskyFactor& factor,
-                                 const Points& displacement, int count) {
+// The modes of a load case; eigenpairs(u, wanted): of -K⁻¹ K_sigma, orthonormal in K.
+template <class Eigensolver>
+BucklingModes find_modes(const TetMesh& mesh, const Material& material, const NodePattern& pattern,
+                         const Points& displacement, int count, const Eigensolver& eigenpairs) {
   if (count < 1) throw std::invalid_argument("count of modes must be >= 1");
   if (displacement.rows() != mesh.nodes.rows() || !displacement.allFinite()) {
     throw std::invalid_argument("the displacement needs three finite components for each node");
@@ -97,35 +100,87 @@ BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
   BucklingModes modes;
   modes.shape.resize(displacement.size(), 0);
   if (pattern.equations() == 0 || displacement.isZero(0.0)) return modes;
-  const Eigen::Index n = pattern.equations();
-  const Eigen::Index most = std::min<Eigen::Index>(count, n);
-  const Eigen::Index block = std::min<Eigen::Index>(std::max(most + 2, Eigen::Index{4}), n);
+  const Eigen::Index most = std::min<Eigen::Index>(count, pattern.equations());
   const Eigen::VectorXd u =
       Eigen::Map<const Eigen::VectorXd>(displacement.data(), displacement.size());
   const double stress_limit = kStressLimit * shear_modulus(material);
   modes.limit = stress_limit / bulk_stress(mesh, material, u);
-  const LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
-  const LowerMatrix geometric = assemble_geometric_stiffness(mesh, material, u, pattern);
-  const auto apply = [&](const Eigen::MatrixXd& v, const Eigen::MatrixXd&) -> Eigen::MatrixXd {
-    return -factor.solve(multiply_columns(geometric, v));
-  };
   const WantedEigenvalues wanted{
       .largest = most, .smallest = 1, .tolerance = kTolerance, .negligible = 1.0 / modes.limit};
-  const Eigenpairs pairs =
-      extreme_eigenpairs(stiffness, apply, factor.solve(random_block(n, block)), wanted);
-  read_modes(mesh, pattern, pairs, most, stress_limit, modes);
+  read_modes(mesh, pattern, eigenpairs(u, wanted), most, stress_limit, modes);
   return modes;
+}
+
+}  // namespace
+
+BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
+                                 const NodePattern& pattern, const CholeskyFactor& factor,
+                                 const Points& displacement, int count) {
+  const auto eigenpairs = [&](const Eigen::VectorXd& u, const WantedEigenvalues& wanted) {
+    const Eigen::Index n = pattern.equations();
+    const Eigen::Index block =
+        std::min<Eigen::Index>(std::max(wanted.largest + 2, Eigen::Index{4}), n);
+    const LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
+    const LowerMatrix geometric = assemble_geometric_stiffness(mesh, material, u, pattern);
+    const auto apply = [&](const Eigen::MatrixXd& v, const Eigen::MatrixXd&) -> Eigen::MatrixXd {
+      return -factor.solve(multiply_columns(geometric, v));
+    };
+    return extreme_eigenpairs(stiffness, apply, factor.solve(random_block(n, block)), wanted);
+  };
+  return find_modes(mesh, material, pattern, displacement, count, eigenpairs);
+}
+
+BucklingModes buckling_by_iteration(const TetMesh& mesh, const Material& material,
+                                    const NodePattern& pattern, const LowerMatrix& stiffness,
+                                    const TwoLevelPreconditioner& preconditioner,
+                                    const Points& displacement, int count) {
+  const auto eigenpairs = [&](const Eigen::VectorXd& u, const WantedEigenvalues& wanted) {
+    const LowerMatrix geometric = assemble_nodal_geometric_stiffness(mesh, material, u, pattern);
+    // The largest of -K⁻¹ K_sigma are the least of K_sigma x = -value K x, and the reverse.
+    const auto extreme = [&](double sign, Eigen::Index most) {
+      const Eigen::Index n = pattern.equations();
+      const SymmetricPencil pencil{
+          [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+            return sign * multiply_nodal(pattern, geometric, x);
+          },
+          [&](const Eigen::VectorXd& x) { return multiply(stiffness, x); },
+          [&](const Eigen::VectorXd& r) { return preconditioner.apply(r); }};
+      Eigen::MatrixXd start = random_block(n, std::min<Eigen::Index>(most + 2, n));
+      for (auto column : start.colwise()) column = preconditioner.apply(column);  // smooth
+      WantedEigenvalues least = wanted;
+      least.largest = 0;
+      least.smallest = most;
+      return lowest_eigenpairs(pencil, start, least);
+    };
+    const Eigenpairs load = extreme(1.0, wanted.largest);
+    const Eigenpairs reversed = extreme(-1.0, wanted.smallest);
+    Eigenpairs pairs{
+        Eigen::VectorXd(load.values.size() + reversed.values.size()),
+        Eigen::MatrixXd(load.vectors.rows(), load.vectors.cols() + reversed.vectors.cols())};
+    pairs.values << -load.values, reversed.values;
+    pairs.vectors << load.vectors, reversed.vectors;
+    return pairs;
+  };
+  return find_modes(mesh, material, pattern, displacement, count, eigenpairs);
 }
 
 BucklingModes buckling_modes(const TetMesh& mesh, const Material& material,
                              const std::vector<Support>& supports, const Points& displacement,
-                             int count) {
+                             int count, double memory_limit) {
   check_material(material);
   const Constraints constraints = constrain(mesh, supports);
   require_held(mesh, constraints);
   const NodePattern pattern = order_nodes(mesh, constraints);
-  const CholeskyFactor factor(pattern, assemble_stiffness(mesh, material, pattern));
-  return buckling_of_factor(mesh, material, pattern, factor, displacement, count);
+  if (factor_fits(pattern, memory_limit, kEigenOperations)) {
+    const CholeskyFactor factor(pattern, assemble_stiffness(mesh, material, pattern));
+    return buckling_of_factor(mesh, material, pattern, factor, displacement, count);
+  }
+  require_memory(matrix_bytes(pattern), memory_limit, static_cast<int>(mesh.nodes.rows()));
+  const LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
+  const TwoLevelPreconditioner preconditioner(mesh, material, constraints, pattern, stiffness,
+                                              memory_limit);
+  return buckling_by_iteration(mesh, material, pattern, stiffness, preconditioner, displacement,
+                               count);
 }
 
 }  // namespace codesign::fem

@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "fem/boundary/supports.hpp"
+#include "fem/elasticity/memory.hpp"
+#include "fem/elasticity/natural_modes.hpp"
+#include "fem/elasticity/two_level.hpp"
 #include "fem/la/cholesky.hpp"
 #include "fem/la/ordering.hpp"
 #include "fem/mesh/material.hpp"
@@ -29,16 +32,23 @@ struct BucklingModes {
 };
 
 // The lowest buckling modes on the supports under the load that gives the displacement (n, 3) m;
-// prescribed displacements count as held. Throws SolverError, MeshError; std::invalid_argument if
+// prescribed displacements count as held. By a factor if it fits into the memory limit (bytes),
+// else by iteration. Throws SolverError, MemoryLimitError, MeshError; std::invalid_argument if
 // count < 1 or the displacement has another size.
 BucklingModes buckling_modes(const TetMesh& mesh, const Material& material,
                              const std::vector<Support>& supports, const Points& displacement,
-                             int count);
+                             int count, double memory_limit = kMemoryLimit);
 
 // The same from a factor of K, by the largest eigenvalues of -K⁻¹ K_sigma: self-adjoint in the
 // inner product of K, while K_sigma, being indefinite, has none.
 BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
                                  const NodePattern& pattern, const CholeskyFactor& factor,
                                  const Points& displacement, int count);
+
+// The same without a factor, from the stiffness and its preconditioner.
+BucklingModes buckling_by_iteration(const TetMesh& mesh, const Material& material,
+                                    const NodePattern& pattern, const LowerMatrix& stiffness,
+                                    const TwoLevelPreconditioner& preconditioner,
+                                    const Points& displacement, int count);
 
 }  // namespace codesign::fem

@@ -5,17 +5,30 @@
 #include <stdexcept>
 
 #include "fem/boundary/rigid_motions.hpp"
+#include "fem/elasticity/nodal_matrices.hpp"
 #include "fem/la/block_krylov.hpp"
+#include "fem/la/lobpcg.hpp"
 
 namespace codesign::fem {
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kTolerance = 1e-9;  // relative change of an eigenvalue in a round of iteration
 
 // K + shift M, in place.
 void add_mass(double shift, const LowerMatrix& mass, LowerMatrix& stiffness) {
   for (std::size_t i = 0; i < mass.value.size(); ++i) stiffness.value[i] += shift * mass.value[i];
+}
+
+// pairs: of (K + shift M) x = value M x, ascending.
+NaturalModes read_modes(const NodePattern& pattern, const Eigenpairs& pairs, double shift) {
+  NaturalModes modes{Eigen::VectorXd(pairs.values.size()), nodal_columns(pattern, pairs.vectors)};
+  for (Eigen::Index k = 0; k < pairs.values.size(); ++k) {
+    const double square = pairs.values[k] - shift;
+    modes.frequency[k] = square > 1e-6 * shift ? std::sqrt(square) / (2.0 * kPi) : 0.0;
+  }
+  return modes;
 }
 
 }  // namespace
@@ -29,30 +42,54 @@ NaturalModes modes_of_factor(const NodePattern& pattern, const LowerMatrix& mass
   const Eigenpairs pairs = extreme_eigenpairs(
       mass, [&](const Eigen::MatrixXd&, const Eigen::MatrixXd& mv) { return factor.solve(mv); },
       factor.solve(random_block(n, block)), {.largest = wanted});
-  NaturalModes modes{Eigen::VectorXd(wanted), nodal_columns(pattern, pairs.vectors)};
-  for (Eigen::Index k = 0; k < wanted; ++k) {  // the largest value is the lowest frequency
-    const double square = 1.0 / pairs.values[k] - shift;
-    modes.frequency[k] = square > 1e-6 * shift ? std::sqrt(square) / (2.0 * kPi) : 0.0;
-  }
-  return modes;
+  return read_modes(pattern, {pairs.values.cwiseInverse(), pairs.vectors}, shift);
+}
+
+NaturalModes modes_by_iteration(const NodePattern& pattern, const LowerMatrix& nodal_mass,
+                                const LowerMatrix& stiffness,
+                                const TwoLevelPreconditioner& preconditioner, double shift,
+                                int count) {
+  if (count < 1) throw std::invalid_argument("count of modes must be >= 1");
+  const Eigen::Index n = pattern.equations();
+  const Eigen::Index wanted = std::min<Eigen::Index>(count, n);
+  const SymmetricPencil pencil{
+      [&](const Eigen::VectorXd& x) { return multiply(stiffness, x); },
+      [&](const Eigen::VectorXd& x) { return multiply_nodal(pattern, nodal_mass, x); },
+      [&](const Eigen::VectorXd& r) { return preconditioner.apply(r); }};
+  Eigen::MatrixXd start = random_block(n, std::min<Eigen::Index>(wanted + 2, n));
+  for (auto column : start.colwise()) column = preconditioner.apply(column);  // smooth
+  return read_modes(
+      pattern,
+      lowest_eigenpairs(pencil, start, {.largest = 0, .smallest = wanted, .tolerance = kTolerance}),
+      shift);
 }
 
 NaturalModes natural_modes(const TetMesh& mesh, const Material& material,
-                           const std::vector<Support>& supports, int count) {
+                           const std::vector<Support>& supports, int count, double memory_limit) {
   check_material(material);
   if (!(material.density > 0)) throw std::invalid_argument("modes need a density above 0");
+  if (count < 1) throw std::invalid_argument("count of modes must be >= 1");
   const Constraints constraints = constrain(mesh, supports);
   const NodePattern pattern = order_nodes(mesh, constraints);
-  const LowerMatrix mass = assemble_mass(mesh, material, pattern);
-  LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
   double shift = 0.0;
   if (!free_rigid_motions(mesh, constraints).empty()) {
     const double length = extent(mesh.nodes);
     shift = 0.01 * material.young_modulus / (material.density * length * length);
-    add_mass(shift, mass, stiffness);
   }
-  const CholeskyFactor factor(pattern, stiffness);
-  return modes_of_factor(pattern, mass, factor, shift, count);
+  if (factor_fits(pattern, memory_limit, kEigenOperations)) {
+    const LowerMatrix mass = assemble_mass(mesh, material, pattern);
+    LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
+    if (shift > 0.0) add_mass(shift, mass, stiffness);
+    const CholeskyFactor factor(pattern, stiffness);
+    return modes_of_factor(pattern, mass, factor, shift, count);
+  }
+  require_memory(matrix_bytes(pattern), memory_limit, static_cast<int>(mesh.nodes.rows()));
+  const LowerMatrix mass = assemble_nodal_mass(mesh, material, pattern);
+  LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
+  if (shift > 0.0) add_nodal(shift, mass, pattern, stiffness);
+  const TwoLevelPreconditioner preconditioner(mesh, material, constraints, pattern, stiffness,
+                                              memory_limit, shift);
+  return modes_by_iteration(pattern, mass, stiffness, preconditioner, shift, count);
 }
 
 }  // namespace codesign::fem

@@ -4,13 +4,18 @@
 #include <vector>
 
 #include "fem/boundary/supports.hpp"
+#include "fem/elasticity/memory.hpp"
 #include "fem/elasticity/stiffness.hpp"
+#include "fem/elasticity/two_level.hpp"
 #include "fem/la/cholesky.hpp"
 #include "fem/la/ordering.hpp"
 #include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {
+
+// Multiply-adds of a factorization that takes as long as eigenvalues by iteration.
+inline constexpr double kEigenOperations = 1e11;
 
 // Undamped free vibration, K x = (2 pi f)² M x.
 struct NaturalModes {
@@ -19,13 +24,21 @@ struct NaturalModes {
 };
 
 // The lowest modes of a part on its supports (prescribed displacements count as held), or free:
-// then the rigid motions come first. Throws SolverError, MeshError; std::invalid_argument if the
-// material has no density or count < 1.
+// then the rigid motions come first. By a factor if it fits into the memory limit (bytes), else by
+// iteration. Throws SolverError, MemoryLimitError, MeshError; std::invalid_argument if the material
+// has no density or count < 1.
 NaturalModes natural_modes(const TetMesh& mesh, const Material& material,
-                           const std::vector<Support>& supports, int count);
+                           const std::vector<Support>& supports, int count,
+                           double memory_limit = kMemoryLimit);
 
 // The same from a factor of K + shift M, by the largest eigenvalues of (K + shift M)⁻¹ M.
 NaturalModes modes_of_factor(const NodePattern& pattern, const LowerMatrix& mass,
                              const CholeskyFactor& factor, double shift, int count);
+
+// The same without a factor, from `stiffness`, K + shift M, and its preconditioner.
+NaturalModes modes_by_iteration(const NodePattern& pattern, const LowerMatrix& nodal_mass,
+                                const LowerMatrix& stiffness,
+                                const TwoLevelPreconditioner& preconditioner, double shift,
+                                int count);
 
 }  // namespace codesign::fem

@@ -8,6 +8,7 @@
 
 #include "errors.hpp"
 #include "fem/boundary/rigid_motions.hpp"
+#include "fem/elasticity/nodal_matrices.hpp"
 #include "fem/elasticity/stiffness.hpp"
 #include "fem/elasticity/two_level.hpp"
 #include "fem/la/cholesky.hpp"
@@ -45,10 +46,7 @@ void check_settings(const StaticSettings& s) {
 
 bool solves_directly(const NodePattern& pattern, const StaticSettings& settings) {
   if (settings.solver != LinearSolver::automatic) return settings.solver == LinearSolver::direct;
-  const double entries = pattern.supernodes.entries;
-  return sizeof(double) * entries <= settings.memory_limit &&
-         entries < std::numeric_limits<int>::max() &&
-         pattern.supernodes.operations <= kDirectOperations;
+  return factor_fits(pattern, settings.memory_limit, kDirectOperations);
 }
 
 }  // namespace
@@ -64,6 +62,12 @@ struct StaticSystem::Data {
   LowerMatrix stiffness;
   std::unique_ptr<TwoLevelPreconditioner> preconditioner;
   std::vector<int> clamped;
+
+  // Whether eigenvalues are worth a factor although one load case was not.
+  bool refactors() const {
+    return !factor && settings.solver == LinearSolver::automatic &&
+           factor_fits(pattern, settings.memory_limit, kEigenOperations);
+  }
 
   Eigen::VectorXd gather(const Eigen::VectorXd& nodal) const {
     Eigen::VectorXd result(pattern.equations());
@@ -205,13 +209,16 @@ StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support>
   d.clamped = clamped_triangles(d.mesh, d.supports);
   d.pattern = order_nodes(d.mesh, d.constraints);
   if (d.pattern.equations() == 0) return;
+  const bool direct = solves_directly(d.pattern, settings);
+  require_memory(matrix_bytes(d.pattern) + (direct ? factor_bytes(d.pattern) : 0.0),
+                 settings.memory_limit, static_cast<int>(d.mesh.nodes.rows()));
   LowerMatrix stiffness = assemble_stiffness(d.mesh, d.material, d.pattern);
-  if (solves_directly(d.pattern, settings)) {
+  if (direct) {
     d.factor = std::make_unique<CholeskyFactor>(d.pattern, stiffness);
   } else {
     d.stiffness = std::move(stiffness);
-    d.preconditioner = std::make_unique<TwoLevelPreconditioner>(d.mesh, d.material, d.constraints,
-                                                                d.pattern, d.stiffness);
+    d.preconditioner = std::make_unique<TwoLevelPreconditioner>(
+        d.mesh, d.material, d.constraints, d.pattern, d.stiffness, settings.memory_limit);
   }
 }
 
@@ -240,8 +247,15 @@ StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
 
 NaturalModes StaticSystem::natural_modes(int count) const {
   const Data& d = *data_;
-  if (!d.factor) return codesign::fem::natural_modes(d.mesh, d.material, d.supports, count);
+  if (d.refactors()) {
+    return codesign::fem::natural_modes(d.mesh, d.material, d.supports, count,
+                                        d.settings.memory_limit);
+  }
   if (!(d.material.density > 0)) throw std::invalid_argument("modes need a density above 0");
+  if (!d.factor) {
+    return modes_by_iteration(d.pattern, assemble_nodal_mass(d.mesh, d.material, d.pattern),
+                              d.stiffness, *d.preconditioner, 0.0, count);
+  }
   return modes_of_factor(d.pattern, assemble_mass(d.mesh, d.material, d.pattern), *d.factor, 0.0,
                          count);
 }
@@ -259,8 +273,13 @@ Points StaticSystem::displacement(const std::vector<Load>& loads) const {
 
 BucklingModes StaticSystem::buckling_modes(const Points& displacement, int count) const {
   const Data& d = *data_;
+  if (d.refactors()) {
+    return codesign::fem::buckling_modes(d.mesh, d.material, d.supports, displacement, count,
+                                         d.settings.memory_limit);
+  }
   if (!d.factor) {
-    return codesign::fem::buckling_modes(d.mesh, d.material, d.supports, displacement, count);
+    return buckling_by_iteration(d.mesh, d.material, d.pattern, d.stiffness, *d.preconditioner,
+                                 displacement, count);
   }
   return buckling_of_factor(d.mesh, d.material, d.pattern, *d.factor, displacement, count);
 }

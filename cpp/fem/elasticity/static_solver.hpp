@@ -8,6 +8,7 @@
 #include "fem/boundary/loads.hpp"
 #include "fem/boundary/supports.hpp"
 #include "fem/elasticity/buckling.hpp"
+#include "fem/elasticity/memory.hpp"
 #include "fem/elasticity/natural_modes.hpp"
 #include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
@@ -22,8 +23,8 @@
 // by quadratic tetrahedra: order, assemble, factorise, solve, check the residual, recover stress.
 namespace codesign::fem {
 
-// automatic: direct unless the factor is larger than the memory limit or takes longer than
-// conjugate gradients for one load case; both are known before it is computed.
+// automatic: direct unless stiffness and factor are larger than the memory limit or the factor
+// takes longer than conjugate gradients for one load case; both are known before it is computed.
 enum class LinearSolver { automatic, direct, iterative };
 
 struct StaticSettings {
@@ -33,7 +34,7 @@ struct StaticSettings {
   int copies = 1;                    // 2 for a half model: work and stress_volume count the part
   double residual_tolerance = 1e-9;  // relative
   LinearSolver solver = LinearSolver::automatic;
-  double memory_limit = 4e9;  // bytes for the factor
+  double memory_limit = kMemoryLimit;  // bytes for matrices and factors
 };
 
 struct StaticModel {
@@ -83,8 +84,8 @@ struct StaticResult {
 // A model ordered, assembled and factorised once, for any number of load cases.
 class StaticSystem {
  public:
-  // Throws SolverError naming the free rigid motions if the supports do not hold the part, and
-  // MeshError for inverted elements.
+  // Throws SolverError naming the free rigid motions if the supports do not hold the part,
+  // MemoryLimitError if no solver fits into the memory limit, and MeshError for inverted elements.
   StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
                StaticSettings settings = {});
   ~StaticSystem();

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "errors.hpp"
+#include "interrupt.hpp"
 
 namespace codesign::fem {
 
@@ -138,30 +139,6 @@ void scatter(const NodePattern& pattern, const std::vector<int>& offset, const i
   }
 }
 
-}  // namespace
-
-void element_stiffness(const TetNodes& x, double lambda, double mu, ElementMatrix& k) {
-  TetPoints points;
-  evaluate_tet(x, stiffness_rule(x), points);
-  // Integral of grad_a N_i grad_b N_j, from which isotropic elasticity is a recombination.
-  ElementMatrix g = ElementMatrix::Zero();
-  for (int q = 0; q < points.count; ++q) {
-    const double weight = points.weights[at(q)];
-    if (!(weight > 0)) throw MeshError("inverted element: its Jacobian is not positive");
-    const Eigen::Map<const Eigen::Matrix<double, 30, 1>> v(points.gradients[at(q)].data());
-    g.noalias() += (weight * v) * v.transpose();
-  }
-  for (int j = 0; j < kTetNodes; ++j) {
-    for (int i = 0; i < kTetNodes; ++i) {
-      const Eigen::Matrix3d gij = g.block<3, 3>(3 * i, 3 * j);
-      k.block<3, 3>(3 * i, 3 * j) = lambda * gij + mu * gij.transpose();
-      k.block<3, 3>(3 * i, 3 * j).diagonal().array() += mu * gij.trace();
-    }
-  }
-}
-
-namespace {
-
 // Sum of the element matrices that element(e, k) writes into k.
 template <class Element>
 LowerMatrix assemble(const TetMesh& mesh, const NodePattern& pattern, const Element& element) {
@@ -169,6 +146,7 @@ LowerMatrix assemble(const TetMesh& mesh, const NodePattern& pattern, const Elem
   const std::vector<int> offset = fill_structure(pattern, a);
   ElementMatrix k;
   for (const int e : elements_by_column(mesh, pattern)) {
+    check_interrupt();
     try {
       element(e, k);
     } catch (const MeshError& error) {
@@ -178,8 +156,6 @@ LowerMatrix assemble(const TetMesh& mesh, const NodePattern& pattern, const Elem
   }
   return a;
 }
-
-using NodeMatrix = Eigen::Matrix<double, kTetNodes, kTetNodes>;
 
 // Element matrix that acts on each of the three components alike.
 void spread(const NodeMatrix& m, ElementMatrix& k) {
@@ -191,12 +167,13 @@ void spread(const NodeMatrix& m, ElementMatrix& k) {
   }
 }
 
-// Stress (Pa) of a displacement field at a point of an element.
-Eigen::Matrix3d stress_tensor(double lambda, double mu, const TetNodes& u, const TetGradients& g) {
-  const Eigen::Matrix3d h = u * g.transpose();  // d u_i / d x_j
-  Eigen::Matrix3d stress = mu * (h + h.transpose());
-  stress.diagonal().array() += lambda * h.trace();
-  return stress;
+template <class Element>
+LowerMatrix assemble_spread(const TetMesh& mesh, const NodePattern& pattern, Element element) {
+  NodeMatrix m;
+  return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
+    element(e, m);
+    spread(m, k);
+  });
 }
 
 }  // namespace
@@ -211,45 +188,30 @@ LowerMatrix assemble_stiffness(const TetMesh& mesh, const Material& material,
 
 LowerMatrix assemble_mass(const TetMesh& mesh, const Material& material,
                           const NodePattern& pattern) {
-  const TetRule& rule = tet_rule_14();
-  std::vector<TetValues> values;
-  for (const Eigen::Vector3d& p : rule.points) values.push_back(tet10_values(p));
-  TetPoints points;
-  return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
-    evaluate_tet(tet_nodes(mesh, e), rule, points);
-    NodeMatrix m = NodeMatrix::Zero();
-    for (int q = 0; q < points.count; ++q) {
-      m.noalias() +=
-          (material.density * points.weights[at(q)] * values[at(q)]) * values[at(q)].transpose();
-    }
-    spread(m, k);
-  });
+  return assemble_spread(mesh, pattern, MassElement(mesh, material));
 }
 
 LowerMatrix assemble_geometric_stiffness(const TetMesh& mesh, const Material& material,
                                          const Eigen::VectorXd& displacement,
                                          const NodePattern& pattern) {
-  const double lambda = lame_lambda(material), mu = shear_modulus(material);
-  TetPoints points;
-  return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
-    const TetNodes u = tet_displacements(mesh, e, displacement);
-    evaluate_tet(tet_nodes(mesh, e), tet_rule_14(), points);
-    NodeMatrix m = NodeMatrix::Zero();
-    for (int q = 0; q < points.count; ++q) {
-      const TetGradients& g = points.gradients[at(q)];
-      m.noalias() += points.weights[at(q)] * (g.transpose() * stress_tensor(lambda, mu, u, g) * g);
-    }
-    spread(m, k);
-  });
+  return assemble_spread(mesh, pattern, GeometricElement(mesh, material, displacement));
 }
 
 LowerMatrix assemble_linear_stiffness(const TetMesh& mesh, const Material& material,
-                                      const Constraints& constraints, const NodePattern& pattern) {
+                                      const Constraints& constraints, const NodePattern& pattern,
+                                      double shift) {
   const double lambda = lame_lambda(material), mu = shear_modulus(material);
-  ElementMatrix full;
+  MassElement mass(mesh, material);
+  NodeMatrix m;
+  ElementMatrix full, inert;
   Eigen::Matrix<double, 30, 12> interpolation;
   return assemble(mesh, pattern, [&](int e, ElementMatrix& k) {
     element_stiffness(tet_nodes(mesh, e), lambda, mu, full);
+    if (shift > 0.0) {
+      mass(e, m);
+      spread(m, inert);
+      full += shift * inert;
+    }
     interpolation.setZero();
     for (int i = 0; i < kTetNodes; ++i) {
       for (int a = 0; a < 3; ++a) {
@@ -273,6 +235,7 @@ InternalForces internal_forces(const TetMesh& mesh, const Material& material,
                    Eigen::VectorXd::Zero(displacement.size())};
   TetPoints points;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
+    check_interrupt();
     const TetNodes x = tet_nodes(mesh, e), u = tet_displacements(mesh, e, displacement);
     evaluate_tet(x, stiffness_rule(x), points);
     TetNodes force = TetNodes::Zero();

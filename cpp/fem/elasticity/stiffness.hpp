@@ -3,18 +3,13 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fem/elasticity/element_matrices.hpp"
 #include "fem/la/lower_matrix.hpp"
 #include "fem/la/ordering.hpp"
 #include "fem/mesh/material.hpp"
-#include "fem/mesh/tet10.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 
 namespace codesign::fem {
-
-using ElementMatrix = Eigen::Matrix<double, 30, 30>;  // equation 3 * local node + component
-
-// Stiffness of one element with full integration, N/m.
-void element_stiffness(const TetNodes& x, double lambda, double mu, ElementMatrix& k);
 
 // Stiffness of the free components in elimination order. Throws MeshError if an element is
 // inverted (non-positive Jacobian at an integration point).
@@ -26,17 +21,18 @@ LowerMatrix assemble_mass(const TetMesh& mesh, const Material& material,
                           const NodePattern& pattern);
 
 // Geometric (initial-stress) stiffness of the free components, N/m, with the same structure:
-// integral of (grad N_a · sigma · grad N_b) I, sigma the stress of a displacement field (3 n, m).
-// 14 points: the integrand is of degree 3 on a straight element.
+// sigma the stress of a displacement field (3 n, m); see GeometricElement.
 LowerMatrix assemble_geometric_stiffness(const TetMesh& mesh, const Material& material,
                                          const Eigen::VectorXd& displacement,
                                          const NodePattern& pattern);
 
-// Stiffness seen by displacements that are linear over each element (exact also on curved ones):
-// `pattern` numbers corner nodes only, mid-edge nodes follow the mean of their ends where they are
-// free in `constraints`. Symmetric positive definite wherever the stiffness is.
+// Stiffness, plus `shift` times the mass, seen by displacements that are linear over each element
+// (exact also on curved ones): `pattern` numbers corner nodes only, mid-edge nodes follow the mean
+// of their ends where they are free in `constraints`. Symmetric positive definite wherever the sum
+// is.
 LowerMatrix assemble_linear_stiffness(const TetMesh& mesh, const Material& material,
-                                      const Constraints& constraints, const NodePattern& pattern);
+                                      const Constraints& constraints, const NodePattern& pattern,
+                                      double shift = 0.0);
 
 // Nodal forces with which the elements resist a displacement field: integral of Bᵀ sigma, from
 // stresses instead of matrices.

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "fem/elasticity/memory.hpp"
 #include "fem/elasticity/stiffness.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "interrupt.hpp"
 
 namespace codesign::fem {
 
@@ -46,12 +48,16 @@ void solve_upper(const LowerMatrix& a, Eigen::VectorXd& x) {
 TwoLevelPreconditioner::TwoLevelPreconditioner(const TetMesh& mesh, const Material& material,
                                                const Constraints& constraints,
                                                const NodePattern& pattern,
-                                               const LowerMatrix& stiffness)
+                                               const LowerMatrix& stiffness, double memory_limit,
+                                               double shift)
     : stiffness_(stiffness),
       coarse_pattern_(corner_pattern(mesh, constraints)),
       parents_(at(pattern.equations())),
-      coarse_(coarse_pattern_,
-              assemble_linear_stiffness(mesh, material, constraints, coarse_pattern_)) {
+      coarse_((require_memory(matrix_bytes(pattern) + matrix_bytes(coarse_pattern_) +
+                                  factor_bytes(coarse_pattern_),
+                              memory_limit, static_cast<int>(mesh.nodes.rows())),
+               coarse_pattern_),
+              assemble_linear_stiffness(mesh, material, constraints, coarse_pattern_, shift)) {
   for (int e = 0; e < mesh.tets.rows(); ++e) {
     for (int i = 0; i < kTetNodes; ++i) {
       for (int a = 0; a < 3; ++a) {
@@ -99,6 +105,7 @@ ConjugateGradientResult conjugate_gradients(const LowerMatrix& matrix,
   const double target = tolerance * tolerance * rz;
   result.converged = rz <= 0.0;
   while (!result.converged && result.iterations < max_iterations) {
+    check_interrupt();
     const Eigen::VectorXd ap = multiply(matrix, p);
     const double step = rz / p.dot(ap);
     if (!std::isfinite(step)) break;

@@ -13,13 +13,14 @@ namespace codesign::fem {
 // Approximate inverse of the stiffness for models whose factor does not fit into memory: symmetric
 // Gauss-Seidel on all equations around an exact solution of the same model with four-node
 // elements, whose equations are those of the corner nodes (about an eighth). Symmetric positive
-// definite. Refers to `stiffness`, which must outlive it.
+// definite. Refers to `stiffness`, which must outlive it and is K + shift M.
 // Source: p-multigrid with two levels (Ronquist and Patera 1987).
 class TwoLevelPreconditioner {
  public:
+  // Throws MemoryLimitError if `stiffness` and the coarse factor need more bytes than the limit.
   TwoLevelPreconditioner(const TetMesh& mesh, const Material& material,
                          const Constraints& constraints, const NodePattern& pattern,
-                         const LowerMatrix& stiffness);
+                         const LowerMatrix& stiffness, double memory_limit, double shift = 0.0);
 
   Eigen::VectorXd apply(const Eigen::VectorXd& residual) const;
 

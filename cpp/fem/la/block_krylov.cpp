@@ -7,6 +7,7 @@
 
 #include "base/random_stream.hpp"
 #include "errors.hpp"
+#include "interrupt.hpp"
 
 namespace codesign::fem {
 
@@ -53,6 +54,8 @@ struct Projection {
   }
 };
 
+}  // namespace
+
 bool converged(const Eigen::VectorXd& value, const Eigen::VectorXd& last,
                const WantedEigenvalues& wanted) {
   for (Eigen::Index i = 0; i < value.size(); ++i) {
@@ -64,8 +67,6 @@ bool converged(const Eigen::VectorXd& value, const Eigen::VectorXd& last,
   }
   return true;
 }
-
-}  // namespace
 
 Eigen::MatrixXd random_block(Eigen::Index rows, Eigen::Index columns) {
   RandomStream random(1);
@@ -84,7 +85,10 @@ Eigenpairs extreme_eigenpairs(const LowerMatrix& inner, const SelfAdjoint& apply
   Eigen::VectorXd value(top + bottom), last = Eigen::VectorXd::Zero(top + bottom);
   for (int step = 0; step < kMaxBlocks; ++step) {
     const Eigen::Index before = basis.size;
-    for (Eigen::Index k = 0; k < next.cols(); ++k) basis.add(next.col(k));
+    for (Eigen::Index k = 0; k < next.cols(); ++k) {
+      check_interrupt();
+      basis.add(next.col(k));
+    }
     const Eigen::Index added = basis.size - before;
     if (added > 0) {
       next = apply(basis.v.middleCols(before, added), basis.mv.middleCols(before, added));

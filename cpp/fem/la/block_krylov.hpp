@@ -19,6 +19,10 @@ struct WantedEigenvalues {
   double negligible = 0.0;    // a value of smaller magnitude need only be seen to stay so small
 };
 
+// Whether the values have come to rest since the last ones.
+bool converged(const Eigen::VectorXd& value, const Eigen::VectorXd& last,
+               const WantedEigenvalues& wanted);
+
 // The largest eigenvalues, descending, then the smallest, ascending; vectors are columns,
 // orthonormal in the inner product.
 struct Eigenpairs {

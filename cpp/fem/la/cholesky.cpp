@@ -2,10 +2,13 @@
 
 #include <cholmod.h>
 
+#include <cmath>
 #include <mutex>
+#include <string>
 
 #include "errors.hpp"
 #include "fem/la/symbolic_factor.hpp"
+#include "interrupt.hpp"
 
 // Of OpenBLAS and OpenMP, where they are linked.
 extern "C" {
@@ -106,6 +109,7 @@ cholmod_sparse view(const LowerMatrix& a) {
 
 CholeskyFactor::CholeskyFactor(const NodePattern& pattern, const LowerMatrix& matrix)
     : data_(std::make_unique<Data>()) {
+  check_interrupt();
   const OneThread guard;
   cholmod_sparse a = view(matrix);
   cholmod_common& common = data_->common;
@@ -118,7 +122,11 @@ CholeskyFactor::CholeskyFactor(const NodePattern& pattern, const LowerMatrix& ma
     throw SolverError("the stiffness matrix is not positive definite");
   }
   if (common.status != CHOLMOD_OK) {
-    throw SolverError("the factorisation failed: out of memory or too large");
+    throw MemoryLimitError(
+        "the factorization of " + std::to_string(matrix.size()) + " equations needs " +
+        std::to_string(std::lround(pattern.supernodes.entries * 8.0 / (1 << 20))) +
+        " MiB, which the process cannot get: larger elements or the iterative "
+        "solver are needed");
   }
 }
 
@@ -127,6 +135,7 @@ CholeskyFactor::CholeskyFactor(CholeskyFactor&&) noexcept = default;
 CholeskyFactor& CholeskyFactor::operator=(CholeskyFactor&&) noexcept = default;
 
 Eigen::MatrixXd CholeskyFactor::solve(const Eigen::MatrixXd& right_hand_side) const {
+  check_interrupt();
   const OneThread guard;
   Workspace workspace;  // of this call: CHOLMOD writes to it, and calls may run side by side
   cholmod_dense b{};

@@ -17,6 +17,7 @@ struct MeshReport {
   double collapse_distance = 0.0;  // the farthest that a point of the surface moved for that, m
   int crumbs = 0;                  // elements removed that hung on the mesh by a point or an edge
   int peeled = 0;                  // flat boundary elements removed
+  std::size_t questions = 0;       // of the refinement about solid and size: its work
   int refinements = 0;             // rounds of smaller elements, to keep the surface's topology
   std::vector<int> genus = {};     // of each closed piece of the boundary, as of the surface
   double surface_distance = -1.0;  // largest between boundary and surface, m; -1: not measured

@@ -109,10 +109,12 @@ double smallest_jacobian(const TetMesh& mesh, int t) {
 }  // namespace
 
 int curve_edges(TetMesh& mesh, const std::vector<int>& patch, const SurfaceMesh& surface,
-                const std::vector<FeatureLine>& lines, const SolidOracle& oracle) {
+                const std::vector<FeatureLine>& lines, const SolidOracle& oracle,
+                MeshWatch& watch) {
   const CurvesBetween curves = curves_between(surface, lines);
   std::unordered_map<int, MovedNode> moved;
   for (const BoundaryEdge& edge : boundary_edges(mesh, patch)) {
+    watch.step("curving edges");
     const Vector3d middle = mesh.nodes.row(edge.middle).transpose();
     const double length = (mesh.nodes.row(edge.b) - mesh.nodes.row(edge.a)).norm();
     const Vector3d target = target_of(edge, middle, curves, oracle);
@@ -131,6 +133,7 @@ int curve_edges(TetMesh& mesh, const std::vector<int>& patch, const SurfaceMesh&
   for (bool again = true; again;) {
     again = false;
     for (const int t : curved) {
+      watch.step("curving edges");
       if (smallest_jacobian(mesh, t) >= kSmallestJacobian) continue;
       for (int k = 4; k < 10; ++k) {
         const auto node = moved.find(mesh.tets(t, k));

@@ -22,7 +22,7 @@
 #include "errors.hpp"
 #include "fem/mesh/tet_neighbours.hpp"
 #include "fem/meshing/feature_curve.hpp"
-#include "fem/meshing/thread_clock.hpp"
+#include "fem/meshing/mesh_watch.hpp"
 #include "fem/surface/solid_oracle.hpp"
 
 namespace codesign::fem {
@@ -60,8 +60,8 @@ class SolidDomain {
   using Intersection = std::tuple<Point, int, int>;  // point, patch, dimension (0: none)
 
   SolidDomain(const SurfaceMesh& surface, const Patches& patches,
-              const std::vector<FeatureLine>& lines, const SolidOracle& oracle)
-      : patches_(patches), oracle_(oracle) {
+              const std::vector<FeatureLine>& lines, const SolidOracle& oracle, MeshWatch& watch)
+      : patches_(patches), oracle_(oracle), watch_(watch) {
     std::map<int, int> corner_of;  // point of the surface -> corner
     const auto add_corner = [&](int point) {
       const auto [at, fresh] = corner_of.try_emplace(point, static_cast<int>(corners_.size()));
@@ -87,6 +87,7 @@ class SolidDomain {
   struct Is_in_domain {
     const SolidDomain& domain;
     Subdomain operator()(const Point& p) const {
+      domain.watch_.question();
       return domain.oracle_.contains(to_vector(p)) ? Subdomain(1) : Subdomain();
     }
   };
@@ -145,31 +146,37 @@ class SolidDomain {
   FT curve_length(int curve) const { return at(curve).length(); }
   FT curve_segment_length(const Point& p, const Point& q, int curve,
                           CGAL::Orientation orientation) const {
-    return at(curve).length_between(to_vector(p), to_vector(q), orientation == CGAL::POSITIVE);
+    return asked(curve).length_between(to_vector(p), to_vector(q), orientation == CGAL::POSITIVE);
   }
   Point construct_point_on_curve(const Point& p, int curve, FT distance) const {
-    return to_point(at(curve).point_at(to_vector(p), distance));
+    return to_point(asked(curve).point_at(to_vector(p), distance));
   }
   CGAL::Sign distance_sign(const Point& p, const Point& q, int curve) const {
-    return CGAL::sign(at(curve).position(to_vector(q)) - at(curve).position(to_vector(p)));
+    return CGAL::sign(asked(curve).position(to_vector(q)) - asked(curve).position(to_vector(p)));
   }
   CGAL::Sign distance_sign_along_loop(const Point& p, const Point& q, const Point& r,
                                       int curve) const {
-    const double pq = at(curve).length_between(to_vector(p), to_vector(q), true);
-    const double pr = at(curve).length_between(to_vector(p), to_vector(r), true);
+    const double pq = asked(curve).length_between(to_vector(p), to_vector(q), true);
+    const double pr = asked(curve).length_between(to_vector(p), to_vector(r), true);
     return pq <= pr ? CGAL::POSITIVE : CGAL::NEGATIVE;
   }
   bool is_curve_segment_covered(int curve, CGAL::Orientation orientation, const Point& p,
                                 const Point& q, FT squared_radius_p, FT squared_radius_q) const {
-    return at(curve).is_covered(to_vector(p), squared_radius_p, to_vector(q), squared_radius_q,
-                                orientation == CGAL::POSITIVE);
+    return asked(curve).is_covered(to_vector(p), squared_radius_p, to_vector(q), squared_radius_q,
+                                   orientation == CGAL::POSITIVE);
   }
 
  private:
   const FeatureCurve& at(int curve) const { return curves_[static_cast<std::size_t>(curve - 1)]; }
 
+  const FeatureCurve& asked(int curve) const {
+    watch_.question();
+    return at(curve);
+  }
+
   Intersection intersection(const Vector3d& base, const Vector3d& direction, double first,
                             double last) const {
+    watch_.question();
     const auto piece = oracle_.clip(base, direction, first, last);
     if (!piece) return {};
     const auto hit = oracle_.hit(piece->a, piece->b);
@@ -180,6 +187,7 @@ class SolidDomain {
 
   const Patches& patches_;
   const SolidOracle& oracle_;
+  MeshWatch& watch_;
   std::vector<Point> corners_;
   std::vector<FeatureCurve> curves_;
   std::vector<std::pair<int, int>> ends_;  // corners at the ends of a curve, -1: none
@@ -190,32 +198,17 @@ using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, int, int>
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 using Control = CGAL::parameters::internal::Mesh_3_options;
 
-// Stops a run that takes too long. The mesher asks for the wanted size in all of its loops, so the
-// size field is where the clock is read.
-struct Watch {
-  double deadline, limit;
-  unsigned calls = 0;
-
-  void check() {
-    if ((++calls & 0x3F) == 0 && thread_seconds() > deadline) stop();
-  }
-  [[noreturn]] void stop() const {
-    throw MeshError("meshing was stopped after " + std::to_string(limit) +
-                    " s (time_limit): a larger edge length or a cleaner surface is needed");
-  }
-};
-
 struct SizingField {
   using FT = Kernel::FT;
   using Point_3 = Point;
   using Index = SolidDomain::Index;
 
   const SizeField* field;
-  Watch* watch;
+  MeshWatch* watch;
   double factor;
 
   FT operator()(const Point& p, int, const Index&) const {
-    watch->check();
+    watch->question();
     return factor * size_at(*field, to_vector(p));
   }
 };
@@ -256,10 +249,13 @@ void insert_points(const SurfaceMesh& surface, const Patches& patches, int shell
 // Protecting balls on the feature lines. The refinement looks for surface where it has points
 // already, so shells without lines (a round cavity) get some.
 void start_complex(const SurfaceMesh& surface, const Patches& patches, const SolidDomain& domain,
-                   const Criteria& criteria, const Control& control, Complex& complex) {
+                   const Criteria& criteria, const Control& control, const MeshWatch& watch,
+                   Complex& complex) {
+  MeshWatch::Alarm alarm(watch);
   CGAL::Mesh_3::internal::init_c3t3_with_features(
       complex, domain, criteria, control.nonlinear_growth_of_balls,
-      control.maximal_number_of_vertices, control.pointer_to_error_code);
+      control.maximal_number_of_vertices, control.pointer_to_error_code, alarm.flag());
+  if (*alarm.flag()) throw MeshWatch::Stop{MeshWatch::Limit::time};
   std::vector<bool> has_line(static_cast<std::size_t>(patches.shells), false);
   for (std::size_t t = 0; t < patches.line.size(); ++t)
     for (const bool line : patches.line[t])
@@ -287,6 +283,16 @@ int label_of(const Complex& complex, Complex::Cell_handle cell, int k, const Pat
     centre += Vector3d(p.x(), p.y(), p.z()) / 3.0;
   }
   return patches.of_triangle[static_cast<std::size_t>(oracle.nearest(centre, -1).triangle)];
+}
+
+// Of all vertices, those of the protecting balls included.
+std::vector<Vector3d> points_of(const Complex& complex) {
+  std::vector<Vector3d> points;
+  for (const auto vertex : complex.triangulation().finite_vertex_handles()) {
+    const auto& p = vertex->point();
+    points.emplace_back(p.x(), p.y(), p.z());
+  }
+  return points;
 }
 
 LinearTets extract(const Complex& complex, const Patches& patches, const SolidOracle& oracle) {
@@ -317,16 +323,16 @@ LinearTets extract(const Complex& complex, const Patches& patches, const SolidOr
 }  // namespace
 
 LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
-                         const MeshOptions& options, bool separate_patches) {
+                         const MeshOptions& options, bool separate_patches, MeshWatch& watch) {
   const auto& [surface, simplified, topology, patches, lines, oracle] = prepared;
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh in every run
-  Watch watch{thread_seconds() + options.time_limit, options.time_limit};
   const SizingField length{&size, &watch, 1.0};
   const SizingField distance{&size, &watch, options.facet_distance};
   CGAL::Mesh_error_code error = CGAL::CGAL_MESH_3_NO_ERROR;
   namespace set = CGAL::parameters;
+  Complex complex;
   try {
-    const SolidDomain domain(surface, patches, lines, oracle);
+    const SolidDomain domain(surface, patches, lines, oracle, watch);
     const Criteria criteria(
         set::edge_size = length, set::facet_size = length,
         set::facet_angle = options.facet_angle / kDegree, set::facet_distance = distance,
@@ -336,15 +342,15 @@ LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
     Control control;
     control.maximal_number_of_vertices = options.max_vertices;
     control.pointer_to_error_code = &error;
-    Complex complex;
-    start_complex(surface, patches, domain, criteria, control, complex);
+    start_complex(surface, patches, domain, criteria, control, watch, complex);
     CGAL::refine_mesh_3(complex, domain, criteria, set::no_exude(), set::no_perturb(),
                         set::no_odt(), set::no_lloyd(), set::no_reset_c3t3(), control,
                         set::non_manifold());
     if (error == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED)
-      throw MeshError("the mesh would need more than " + std::to_string(options.max_vertices) +
-                      " vertices (max_vertices): a larger edge length is needed");
+      watch.report(MeshWatch::Limit::vertices, size, points_of(complex));
     return extract(complex, patches, oracle);
+  } catch (const MeshWatch::Stop& stop) {
+    watch.report(stop.limit, size, points_of(complex));
   } catch (const CGAL::Failure_exception& e) {
     throw MeshError(std::string("the mesher broke down: ") + e.what());
   }

@@ -39,10 +39,11 @@ double quality(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Ve
 
 class Improver {
  public:
-  Improver(LinearTets& mesh, double target, const SolidOracle& oracle)
+  Improver(LinearTets& mesh, double target, const SolidOracle& oracle, MeshWatch& watch)
       : mesh_(mesh),
         target_(target),
         oracle_(oracle),
+        watch_(watch),
         alive_(mesh.tets.size(), true),
         tets_at_(mesh.points.size()),
         patch_(mesh.points.size(), -1) {
@@ -58,8 +59,10 @@ class Improver {
   int run() {
     for (int round = 0; round < kRounds; ++round) {
       bool changed = false;
-      for (const int t : find_bad())
+      for (const int t : find_bad()) {
+        watch_.step("improving elements");
         if (alive_[index(t)] && quality_of(t) < target_) changed |= improve(t);
+      }
       if (!changed) break;
     }
     const auto left = static_cast<int>(find_bad().size());
@@ -273,6 +276,7 @@ class Improver {
   LinearTets& mesh_;
   double target_;
   const SolidOracle& oracle_;
+  MeshWatch& watch_;
   std::vector<bool> alive_;
   std::vector<std::vector<int>> tets_at_;
   std::vector<int> patch_;  // of points on the boundary: one of those around
@@ -280,8 +284,8 @@ class Improver {
 
 }  // namespace
 
-int improve_tets(LinearTets& mesh, double angle, const SolidOracle& oracle) {
-  return Improver(mesh, std::sin(angle), oracle).run();
+int improve_tets(LinearTets& mesh, double angle, const SolidOracle& oracle, MeshWatch& watch) {
+  return Improver(mesh, std::sin(angle), oracle, watch).run();
 }
 
 }  // namespace codesign::fem

@@ -12,6 +12,7 @@
 #include "fem/meshing/curved_edges.hpp"
 #include "fem/meshing/delaunay_mesher.hpp"
 #include "fem/meshing/linear_tets.hpp"
+#include "fem/meshing/mesh_watch.hpp"
 #include "fem/meshing/prepared_surface.hpp"
 #include "fem/meshing/tet_improve.hpp"
 #include "fem/meshing/topology_keeper.hpp"
@@ -36,6 +37,7 @@ void check_options(const MeshOptions& options) {
           "facet_angle: at most 30 degrees, or the refinement may not end");
   require(options.radius_edge >= 2.0, "radius_edge: at least 2, or the refinement may not end");
   require(options.topology_rounds >= 0, "topology_rounds: must not be negative");
+  require(options.max_questions > 0, "max_questions: must be positive");
   require(options.time_limit > 0.0, "time_limit: must be positive");
 }
 
@@ -101,14 +103,15 @@ void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, cons
 
 // One mesh at the given size; boundary_face holds patches.
 TetMesh mesh_once(const PreparedSurface& prepared, const SizeField& size,
-                  const MeshOptions& options, bool separate_patches) {
-  LinearTets tets = delaunay_mesh(prepared, size, options, separate_patches);
+                  const MeshOptions& options, bool separate_patches, MeshWatch& watch) {
+  LinearTets tets = delaunay_mesh(prepared, size, options, separate_patches, watch);
   if (tets.tets.empty()) throw MeshError("the mesh is empty");
   const int crumbs = remove_crumbs(tets, kCrumb);
   const int peeled = peel_flat_tets(tets, options.flat_angle, kStraightAngle);
-  improve_tets(tets, options.sliver_angle, prepared.oracle);
+  improve_tets(tets, options.sliver_angle, prepared.oracle, watch);
   TetMesh mesh = to_quadratic(tets, prepared.surface.face_names);
-  mesh.report = {prepared.simplified.collapsed, prepared.simplified.distance, crumbs, peeled};
+  mesh.report = {prepared.simplified.collapsed, prepared.simplified.distance, crumbs, peeled,
+                 watch.questions()};
   return mesh;
 }
 
@@ -118,18 +121,22 @@ TetMesh tetrahedralize(const SurfaceMesh& input, const SizeField& size,
                        const MeshOptions& options) {
   check_options(options);
   check_size_field(size);
+  MeshWatch watch(options);
   const PreparedSurface prepared = prepare_surface(input, size, options);
+  watch.require_affordable(enclosed_volume(prepared.surface), size);
   TopologyKeeper keeper(prepared, size, options);
   TetMesh mesh;
   do {
     try {
-      mesh = mesh_once(prepared, keeper.size(), keeper.options(), keeper.separate_patches());
+      mesh = mesh_once(prepared, keeper.size(), options, keeper.separate_patches(), watch);
+    } catch (const MeshLimitError& error) {
+      throw MeshLimitError(keeper.explain(error.what()));
     } catch (const MeshError& error) {
-      keeper.refuse(error.what());
+      throw MeshError(keeper.explain(error.what()));
     }
   } while (!keeper.accepts(mesh));
   if (options.curved)
-    curve_edges(mesh, mesh.boundary_face, prepared.surface, prepared.lines, prepared.oracle);
+    curve_edges(mesh, mesh.boundary_face, prepared.surface, prepared.lines, prepared.oracle, watch);
   for (int& label : mesh.boundary_face)
     label = prepared.patches.face[static_cast<std::size_t>(label)];
   check_against_surface(mesh, prepared.surface, keeper.size(), options);

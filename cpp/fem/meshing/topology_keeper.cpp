@@ -5,13 +5,10 @@
 
 #include "errors.hpp"
 #include "fem/meshing/surface_match.hpp"
-#include "fem/meshing/thread_clock.hpp"
 #include "fem/meshing/wall_size.hpp"
 
 namespace codesign::fem {
 namespace {
-
-constexpr double kLeastTime = 1e-3;  // s
 
 int total_genus(const Topology& topology) {
   int genus = 0;
@@ -43,14 +40,7 @@ TopologyKeeper::TopologyKeeper(const PreparedSurface& prepared, const SizeField&
                                const MeshOptions& options)
     : prepared_(prepared),
       size_(size),
-      options_(options),
-      deadline_(thread_seconds() + options.time_limit) {}
-
-MeshOptions TopologyKeeper::options() const {
-  MeshOptions options = options_;
-  if (round_ > 0) options.time_limit = std::max(kLeastTime, deadline_ - thread_seconds());
-  return options;
-}
+      options_(options) {}
 
 bool TopologyKeeper::accepts(const TetMesh& mesh) {
   const Topology found = measure_topology(boundary_triangles(mesh));
@@ -60,16 +50,15 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
   mismatch_ = "the mesh has another topology than its surface near " + place_text(places.front()) +
               ": " + difference(found, prepared_.topology);
   if (round_ == options_.topology_rounds)
-    refuse("it still has after " + std::to_string(round_) +
-           " rounds: a smaller edge length or a thicker wall is needed");
+    throw MeshError(explain("it still has after " + std::to_string(round_) +
+                            " rounds: a smaller edge length or a thicker wall is needed"));
   if (walls_.empty()) walls_ = find_walls(prepared_, size_.base / kOfWall);
   size_ = refine_at(size_, places, walls_, ++round_);
   return false;
 }
 
-void TopologyKeeper::refuse(const std::string& reason) const {
-  if (mismatch_.empty()) throw MeshError(reason);
-  throw MeshError(mismatch_ + "; refined there, " + reason);
+std::string TopologyKeeper::explain(const std::string& reason) const {
+  return mismatch_.empty() ? reason : mismatch_ + "; refined there, " + reason;
 }
 
 void TopologyKeeper::report(TetMesh& mesh) const {

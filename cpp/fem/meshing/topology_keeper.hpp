@@ -20,18 +20,16 @@ class TopologyKeeper {
   TopologyKeeper(const PreparedSurface& prepared, const SizeField& size,
                  const MeshOptions& options);
 
-  // What the next mesh is to be made with; the time limit is for all meshes together.
+  // What the next mesh is to be made with.
   const SizeField& size() const { return size_; }
-  MeshOptions options() const;
   bool separate_patches() const { return round_ > 0; }
 
   // Whether the mesh has the topology of the surface; if not, the size is smaller afterwards.
   // mesh.boundary_face: patches. Throws MeshError, with a place, after the last round.
   bool accepts(const TetMesh& mesh);
 
-  // Throws MeshError: what a mesh of another topology could not be refined for; the reason alone
-  // if there was none.
-  [[noreturn]] void refuse(const std::string& reason) const;
+  // What a mesh of another topology could not be refined for; the reason alone if there was none.
+  std::string explain(const std::string& reason) const;
 
   // Completes the report of an accepted mesh.
   void report(TetMesh& mesh) const;
@@ -40,7 +38,6 @@ class TopologyKeeper {
   const PreparedSurface& prepared_;
   SizeField size_;
   MeshOptions options_;
-  double deadline_;
   int round_ = 0;
   std::string mismatch_;           // of the last mesh and where; empty before the first one
   std::vector<WallSample> walls_;  // once a mesh was refused

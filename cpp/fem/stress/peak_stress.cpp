@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fem/mesh/tet10.hpp"
+#include "interrupt.hpp"
 #include "model_error.hpp"
 
 namespace codesign::fem {
@@ -65,6 +66,7 @@ PeakStress largest_sample(const TetMesh& mesh, const Stresses& nodal, const Excl
   static const std::vector<Sample> samples = lattice();
   PeakStress peak;
   for (const auto& [bound, t] : by_bound(mesh, nodal)) {
+    check_interrupt();
     if (peak.triangle >= 0 && bound <= peak.value) break;
     const FaceStress stress = face_stress(mesh, nodal, t);
     const FaceNodes x = face_nodes(mesh, t);

@@ -8,6 +8,7 @@
 
 #include "fem/mesh/incidence.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "interrupt.hpp"
 
 namespace codesign::fem {
 
@@ -194,6 +195,7 @@ Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
   Stresses sum = Stresses::Zero(nodes, 6);
   std::vector<int> count(at(nodes), 0), seen_from(at(nodes), -1);
   for (int v = 0; v < nodes; ++v) {
+    check_interrupt();
     if (!finder.is_corner(v)) continue;
     const PatchField field = fit_around(mesh, v, finder, x, points.stress);
     sum.row(v) += field.coefficients.row(0);
@@ -275,6 +277,7 @@ RecoveryError recovery_error(const TetMesh& mesh, const Material& material,
   TetNodes u;
   Eigen::Matrix<double, kTetNodes, 6> nodal;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
+    check_interrupt();
     evaluate_tet(tet_nodes(mesh, e), rule, points);
     for (int i = 0; i < kTetNodes; ++i) {
       u.col(i) = displacement.segment<3>(3 * mesh.tets(e, i));

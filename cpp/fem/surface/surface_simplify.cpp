@@ -12,6 +12,7 @@
 #include "fem/surface/self_intersection.hpp"
 #include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/surface_features.hpp"
+#include "interrupt.hpp"
 
 namespace codesign::fem {
 namespace {
@@ -48,11 +49,12 @@ class Collapser {
     SimplifyReport report;
     for (bool again = true; again;) {
       again = false;
-      for (const auto& [length, edge] : short_edges())
-        if (collapse(edge.first, edge.second)) {
-          ++report.collapsed;
-          again = true;
-        }
+      for (const auto& [length, edge] : short_edges()) {
+        check_interrupt();
+        if (!collapse(edge.first, edge.second)) continue;
+        ++report.collapsed;
+        again = true;
+      }
     }
     for (const double distance : moved_) report.distance = std::max(report.distance, distance);
     if (report.collapsed > 0) compact();

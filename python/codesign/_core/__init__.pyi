@@ -9,6 +9,7 @@ import numpy.typing
 import typing
 from . import dynamics
 from . import fem
+from . import interrupt
 
 __all__: list[str] = [
     "DesignResult",
@@ -19,6 +20,7 @@ __all__: list[str] = [
     "dynamics",
     "evaluate",
     "fem",
+    "interrupt",
     "library_versions",
     "linked_libraries",
 ]

@@ -19,6 +19,7 @@ __all__: list[str] = [
     "Force",
     "LeftOut",
     "LinearSolver",
+    "MAX_QUESTIONS",
     "MassProperties",
     "Material",
     "MeshQuality",
@@ -35,6 +36,7 @@ __all__: list[str] = [
     "StaticSystem",
     "Support",
     "SurfaceMesh",
+    "TIME_LIMIT",
     "TetMesh",
     "Traction",
     "boundary_surface",
@@ -273,6 +275,11 @@ class MeshReport:
     def peeled(self) -> int:
         """
         flat boundary elements removed
+        """
+    @property
+    def questions(self) -> int:
+        """
+        of the refinement about the solid and the size: its work, on any machine
         """
     @property
     def refinements(self) -> int:
@@ -572,7 +579,7 @@ class StaticSettings:
     @property
     def memory_limit(self) -> float:
         """
-        bytes for the factor
+        bytes for matrices and factors
         """
     @memory_limit.setter
     def memory_limit(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
@@ -855,6 +862,7 @@ def natural_modes(
     material: Material,
     supports: collections.abc.Sequence[Support],
     count: typing.SupportsInt | typing.SupportsIndex,
+    memory_limit: typing.SupportsFloat | typing.SupportsIndex = 4000000000.0,
 ) -> NaturalModes: ...
 def nearest_triangle(
     surface: SurfaceMesh, point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
@@ -927,7 +935,8 @@ def tetrahedralize(
     sliver_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 12.0,
     flat_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 6.0,
     curved: bool = True,
-    time_limit: typing.SupportsFloat | typing.SupportsIndex = 60.0,
+    time_limit: typing.SupportsFloat | typing.SupportsIndex = 300.0,
+    max_questions: typing.SupportsInt | typing.SupportsIndex = 25000000,
     max_vertices: typing.SupportsInt | typing.SupportsIndex = 400000,
     check_intersections: bool = True,
 ) -> TetMesh:
@@ -950,13 +959,15 @@ def tetrahedralize(
         sliver_angle_deg: elements with a smaller dihedral angle are improved where possible.
         flat_angle_deg: flatter boundary elements on one face are removed.
         curved: mid-edge nodes of the boundary on the surface instead of on straight edges.
-        time_limit: processor seconds.
+        time_limit: processor seconds; a safety net, the next two decide on every machine alike.
+        max_questions: of the refinement about the solid and the size (`report.questions`).
         max_vertices: of corner nodes.
         check_intersections: look for triangles that cross each other first.
 
     Raises:
         MeshError: the surface bounds no solid or crosses itself; the mesh is empty, in pieces, of
-            another topology or wrong volume; a limit was reached.
+            another topology or wrong volume.
+        MeshLimitError: a limit was reached; the message says which and, if points crowd, where.
         ValueError: an option out of range.
     """
 
@@ -975,3 +986,6 @@ def triangles_with_normal(
     normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
     angle: typing.SupportsFloat | typing.SupportsIndex,
 ) -> list[int]: ...
+
+MAX_QUESTIONS: int = 25000000
+TIME_LIMIT: float = 300.0

@@ -36,7 +36,7 @@ from codesign.robot.inertial import Inertial
 from codesign.study.config import StudyConfig
 from codesign.study.parts import make_part
 from codesign.transforms import Matrix
-from codesign.units import GIGA, MEGA, MILLIMETER
+from codesign.units import GIGA, MEBIBYTE, MEGA, MILLIMETER
 
 CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
 MODES = 3  # natural frequencies of a part, where a study limits the first
@@ -155,6 +155,7 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
         exclusion=stress.exclusion,
         exclusion_distance=None if stress.exclusion_distance_mm is None else stress.exclusion_distance_mm * MILLIMETER,
         tolerance=stress.tolerance,
+        memory_limit=stress.memory_limit_mib * MEBIBYTE,
         modes=MODES if _asks_for(config, "first_frequency", "frequencies") else 0,
         buckling=1 if _asks_for(config, "buckling_factor") else 0,
     )

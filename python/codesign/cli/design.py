@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,7 @@ from codesign.cli.robot_files import write_robot_files
 from codesign.errors import DesignError
 from codesign.fem.vtu import StressModel, write_vtu
 from codesign.files import write_text
+from codesign.interrupts import native_threads
 from codesign.parts.cad_export import export_parts
 from codesign.parts.component import Component
 from codesign.parts.load_case import part_case
@@ -60,7 +60,7 @@ def export_design(
         study, design, [component for component, _ in placed] + unplaced(study, parts), chosen, organization, formats
     )
     with export_folder(out, order.revision, force) as folder:
-        with ThreadPoolExecutor(1) as beside:  # the native chain releases the interpreter's lock
+        with native_threads(1) as beside:  # the native chain releases the interpreter's lock
             chain = beside.submit(evaluate_with_fields, study, design)
             _write_cad(order, folder / "cad")
             evaluation, analyses, flight = chain.result()

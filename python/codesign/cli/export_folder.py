@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from codesign.errors import ExportError
+from codesign.files import temporary_folder
 
 MANIFEST = "manifest.json"
 
@@ -26,8 +26,7 @@ def export_folder(out: Path, revision: str, force: bool = False) -> Iterator[Pat
     _check(out, revision, force)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as name:
-            work = Path(name)
+        with temporary_folder(out) as work:
             yield work
             for file in _listed(_manifest(out)):
                 (out / file).unlink(missing_ok=True)

@@ -16,6 +16,7 @@ from rich.text import Text
 from codesign import __version__
 from codesign.cli.commands import design, doctor, run, stress, study
 from codesign.cli.console import err, out, print_json
+from codesign.cli.options import INTERRUPTED
 from codesign.errors import CodesignError, FileError, LibraryError
 
 app = typer.Typer(
@@ -46,7 +47,10 @@ def main() -> None:
     logging.basicConfig(level=logging.WARNING, stream=sys.stderr, format="%(levelname)s %(name)s: %(message)s")
     command = typer.main.get_command(app)
     try:
-        code = command.main(standalone_mode=False)
+        from codesign.interrupts import guarded
+
+        with guarded():
+            code = command.main(standalone_mode=False)
     except BrokenPipeError:  # whoever read the output has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1
@@ -58,14 +62,15 @@ def main() -> None:
         code = 2
     except typer.Exit as stop:
         code = stop.exit_code
+    except (KeyboardInterrupt, typer.Abort):
+        code = INTERRUPTED
     except Exception as error:
         if not hasattr(error, "exit_code") or not hasattr(error, "show"):
             raise
         error.show()
         code = 2
-    except KeyboardInterrupt:
+    if code == INTERRUPTED:  # also what typer makes of KeyboardInterrupt
         err.print("interrupted")
-        code = 130
     sys.exit(code if isinstance(code, int) else 0)
 
 

@@ -18,6 +18,7 @@ WorkersOption = Annotated[int | None, typer.Option(min=1, help="Worker processes
 ClusterOption = Annotated[str | None, typer.Option(help="Dask scheduler tcp://host:port, or local:N.")]
 RunArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run.")]
 DEFAULT_STUDY = "ironcub"
+INTERRUPTED = 130  # exit code
 EXAMPLE_DESIGN = "--set angle=15 --set distance=42 --set offset=80 --set length=108"
 
 

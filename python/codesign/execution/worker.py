@@ -70,6 +70,7 @@ def evaluate(
         reason = f"{type(error).__name__}: {error}"
         if exhausted:
             reason = f"memory limit of {memory_mib} MiB exceeded" if memory_mib else "out of memory"
+            reason += " (execution.memory_limit_mib): larger elements of the parts or a larger limit are needed"
         provenance = {"traceback": traceback.format_exc(limit=-8)}
         document = {"design": design, "status": "failed", "reason": reason, "provenance": provenance}
     return {"evaluation": document, "exhausted": exhausted}

@@ -77,11 +77,12 @@ class StaticSystem:
         stress_volume: [m³] `stress_50` is the von Mises stress exceeded in this volume of the part.
         copies: 2 if the mesh is one half of a symmetric part: work and stress_volume then count the whole.
         residual_tolerance: largest relative residual accepted.
-        solver: "direct" factorizes, "iterative" (conjugate gradients, two-level preconditioner) needs far less memory;
+        solver: "direct" factorizes, "iterative" (conjugate gradients, two-level preconditioner) needs less memory;
             "automatic" takes the factor if it fits into memory_limit and is the faster way for one load case.
-        memory_limit: [bytes] for the factor.
+        memory_limit: [bytes] for matrices and factors, of modes and buckling too; decides between the solvers.
 
     Raises:
+        MemoryLimitError: no solver fits into memory_limit; the message says what it needs.
         SolverError: the supports leave a rigid motion free (the message names it), or the residual is too large.
         MeshError: an element is inverted.
         ModelError (a ValueError): supports or loads that select nothing, act on held nodes only or have no effect; an
@@ -162,19 +163,33 @@ def solve_static(
     return system.solve(loads)
 
 
-def natural_frequencies(mesh: TetMesh, material: Material, supports: Sequence[Support], count: int = 6) -> Modes:
+def natural_frequencies(
+    mesh: TetMesh,
+    material: Material,
+    supports: Sequence[Support],
+    count: int = 6,
+    *,
+    memory_limit: float = MEMORY_LIMIT,
+) -> Modes:
     """The lowest modes of a part on its supports, or of a free one (then the rigid motions come first).
 
-    Raises: ValueError: no density, count < 1; MeshError, SolverError.
+    memory_limit: as in `StaticSystem`.
+    Raises: ValueError: no density, count < 1; MeshError, SolverError, MemoryLimitError.
     """
-    return Modes.of(_core.natural_modes(mesh, material, native_supports(mesh, supports), count))
+    return Modes.of(_core.natural_modes(mesh, material, native_supports(mesh, supports), count, memory_limit))
 
 
 def buckling_factors(
-    mesh: TetMesh, material: Material, supports: Sequence[Support], loads: Sequence[Load], count: int = 1
+    mesh: TetMesh,
+    material: Material,
+    supports: Sequence[Support],
+    loads: Sequence[Load],
+    count: int = 1,
+    *,
+    memory_limit: float = MEMORY_LIMIT,
 ) -> Buckling:
-    """The lowest buckling modes of a part on its supports under a load.
+    """The lowest buckling modes of a part on its supports under a load; memory_limit: as in `StaticSystem`.
 
     Raises: ValueError: count < 1; MeshError; SolverError: the part is not held, or the eigenvalues do not converge.
     """
-    return StaticSystem(mesh, material, supports).buckling_factors(loads, count)
+    return StaticSystem(mesh, material, supports, memory_limit=memory_limit).buckling_factors(loads, count)

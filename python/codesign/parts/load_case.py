@@ -15,6 +15,7 @@ from codesign.errors import ModelError, StudyError
 from codesign.fem.model import native_loads, native_supports
 from codesign.fem.static import Exclusion
 from codesign.names import nearest
+from codesign.units import MEBIBYTE
 
 if TYPE_CHECKING:
     from codesign.parts.part import Part
@@ -70,7 +71,8 @@ class StressSettings:
     accuracy: "optimization" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
     error and its change are within the tolerance. exclusion, exclusion_distance [m]: where the peak stress is not read,
     as in `fem.StaticSystem`. tolerance: wanted relative error of the peak stress. modes, buckling: how many natural
-    frequencies and buckling factors are wanted.
+    frequencies and buckling factors are wanted. memory_limit: [bytes] for the matrices and factors of one analysis; it
+    decides between factor and iteration.
     """
 
     material: fem.Material
@@ -83,6 +85,7 @@ class StressSettings:
     exclusion: Exclusion = "local"
     exclusion_distance: float | None = None
     tolerance: float = 0.05
+    memory_limit: float = 1400 * MEBIBYTE
     modes: int = 0
     buckling: int = 0
 
@@ -179,6 +182,7 @@ def native_case(
     static.exclusion = getattr(_core.fem.ExclusionRule, settings.exclusion)
     static.exclusion_distance = settings.exclusion_distance
     static.copies = copies
+    static.memory_limit = settings.memory_limit
     case = _core.PartCase(
         surface=surface,
         size=size,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import logging
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any
 
 from codesign.errors import CodesignError, StoreError
 from codesign.files import write_text
+from codesign.interrupts import native_threads
 from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
@@ -95,7 +95,7 @@ def compute_details(study: Any, run: ReportData) -> ReportData:
             logger.warning("details of design %s are not kept: %s", asked[0], error)
         return detail.evaluation
 
-    with ThreadPoolExecutor(len(wanted)) as pool:  # a handful; the native chain releases the GIL
+    with native_threads(len(wanted)) as pool:  # a handful; the native chain releases the GIL
         evaluations = list(pool.map(compute, wanted))
     return replace(run, baseline=evaluations[-1]) if unknown else run
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 import shutil
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
 from codesign.errors import UrdfError
-from codesign.files import write_text
+from codesign.files import temporary_folder, write_text
 from codesign.robot.description import RobotDescription
 
 if TYPE_CHECKING:
@@ -129,8 +128,7 @@ def write_urdf_package(
         raise UrdfError(f"package name {package!r}: ROS wants lower-case letters, digits and _, such as {plain!r}")
     out_dir = Path(out_dir)
     out_dir.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=out_dir.parent, prefix=f".{out_dir.name}.") as folder:
-        staged = Path(folder)
+    with temporary_folder(out_dir) as staged:
         (staged / "meshes").mkdir()
         prefix = "meshes/" if package is None else f"package://{package}/meshes/"
         renamed: dict[str, str] = {}

@@ -152,6 +152,7 @@ class FemConfig(Section, frozen=True, kw_only=True):
 
     exclusion: where the peak stress is not read, "local" (in proportion to what is near) or "published" (a fixed
     distance); see docs/fem.md. exclusion_distance_mm: instead of the rule's own distances; published: 3.
+    memory_limit_mib: for the matrices and factors of one part; what needs more is solved by iteration, or refused.
     """
 
     geometry: Literal["simplified", "full"] = "simplified"
@@ -161,6 +162,7 @@ class FemConfig(Section, frozen=True, kw_only=True):
     exclusion: Literal["local", "published"] = "local"
     exclusion_distance_mm: NonNegative | None = None
     tolerance: Positive = 0.05
+    memory_limit_mib: Annotated[int, Meta(ge=64, le=2**30)] = 1400
 
 
 class ObjectivesConfig(Section, frozen=True, kw_only=True):

@@ -10,7 +10,15 @@ import typer
 from rich.table import Table
 
 from codesign.cli.console import err, out, print_json, print_run
-from codesign.cli.options import DEFAULT_STUDY, ClusterOption, JsonOption, RunArgument, StudyOption, WorkersOption
+from codesign.cli.options import (
+    DEFAULT_STUDY,
+    INTERRUPTED,
+    ClusterOption,
+    JsonOption,
+    RunArgument,
+    StudyOption,
+    WorkersOption,
+)
 from codesign.errors import StudyError
 
 if TYPE_CHECKING:
@@ -71,8 +79,8 @@ def optimize(
     except ValueError as error:
         raise StudyError(str(error)) from error
     except KeyboardInterrupt:
-        err.print(f"interrupted; continue with: codesign resume {folder}")
-        return 130
+        err.print(f"continue with: codesign resume {folder}")
+        return INTERRUPTED
     return print_run(run, as_json)
 
 
@@ -92,8 +100,8 @@ def resume(
         with ProgressBar(run_dir.name) as bar:
             run = run_resume(run_dir, workers=workers, cluster=cluster, evaluations=evaluations, progress=bar)
     except KeyboardInterrupt:
-        err.print(f"interrupted; continue with: codesign resume {run_dir}")
-        return 130
+        err.print(f"continue with: codesign resume {run_dir}")
+        return INTERRUPTED
     return print_run(run, as_json)
 
 
