@@ -187,3 +187,31 @@ def test_every_sample_follows_from_the_one_before(exported):
         np.testing.assert_allclose(turned * data.qpos[3:7], expected[0][3:7], atol=1e-11)
         np.testing.assert_allclose(data.qpos[7:], expected[0][7:], atol=1e-11)
         np.testing.assert_allclose(data.qvel, expected[1], atol=1e-9)
+
+
+def test_lags_and_turbines_and_reactions():
+    """A lag follows its command, a turbine's thrust is its control; a reaction turns about the axis of the thrust."""
+    text = "".join(
+        f'<link name="{name}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+        "</inertial></link>"
+        for name in ("base", "jet")
+    )
+    text += '<joint name="j" type="fixed"><parent link="base"/><child link="jet"/></joint>'
+    robot = RobotDescription.from_text(f'<robot name="r">{text}</robot>')
+    settings = dyn.FlightSettings()
+    settings.initial_thrusts = np.array([4.0])
+    up = {"frame": "jet", "axis": np.array([0.0, 0.0, 1.0]), "reaction": 0.25, "thrust_max": 10.0, "thrust_rate": 5.0}
+    for dynamics in (dyn.FirstOrderLag(time=0.1), dyn.Turbine()):
+        settings.actuators = [dyn.Actuator(dynamics=dynamics, **up)]
+        model = mujoco.MjModel.from_xml_string(mjcf_text(robot, settings, {}))
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        mujoco.mj_forward(model, data)
+        np.testing.assert_allclose(data.qfrc_actuator, [0, 0, 4.0, 0, 0, 1.0], atol=1e-15)
+        np.testing.assert_array_equal(model.actuator("jet").ctrlrange, [0.0, 10.0])
+        assert model.na == (1 if isinstance(dynamics, dyn.FirstOrderLag) else 0)
+        data.ctrl[0] = 8.0
+        mujoco.mj_step(model, data, 100)
+        mujoco.mj_forward(model, data)
+        expected = 8.0 - 4.0 * np.exp(-1.0) if model.na else 8.0
+        assert data.actuator("jet").force[0] == pytest.approx(expected, rel=1e-8)
