@@ -141,7 +141,7 @@ void check_link_inertia(const RigidInertia& link, const std::string& name, bool 
   if (moments[2] > moments[0] + moments[1] + kTriangleTolerance * moments[2] + slack) {
     throw UrdfError("link " + in_quotes(name) +
                     ": non-physical inertia, a principal moment exceeds the sum of the others: " +
-                    list(moments));
+                    list(moments) + "; as_published accepts it");
   }
 }
 
@@ -254,7 +254,8 @@ class Builder {
                          : joint.type == urdf::Joint::PLANAR ? "planar"
                                                              : "fixed";
       throw UrdfError("joint " + in_quotes(joint.name) + " is " + type +
-                      ": only revolute, continuous and prismatic joints can move");
+                      ": only revolute, continuous and prismatic joints can move; a model with "
+                      "joints=[...] moves those it names and locks the others");
     }
     if (joint.mimic) {
       throw UrdfError("joint " + in_quotes(joint.name) + " mimics joint " +

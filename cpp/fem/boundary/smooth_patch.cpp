@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <set>
@@ -25,6 +26,8 @@ constexpr double kGain =
 constexpr int kGrowths = 8;
 // Angle between a chord and the shape at its centroid over the bend between chords, at most.
 constexpr double kChordShare = 0.3;
+constexpr double kStripLength = 4.0;     // over the width, of a facet between two generators
+constexpr double kGeneratorTurn = 0.03;  // of normals along a generator, sine
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -53,12 +56,14 @@ class Grower {
     const double flat_area = area_of(flat.triangles);
     SmoothPatch best = flat;
     const std::vector<int> seed = seeds(start, flat_area);
-    if (groups_of(seed) >= 3) {
-      for (const auto& fit : {fit_cylinder, fit_cone, fit_sphere}) {
-        const SmoothPatch curved = grow(start, seed, fit);
-        const double needed = best.type == SurfaceType::plane ? kGain : 1.02;
-        if (area_of(curved.triangles) >= needed * area_of(best.triangles)) best = curved;
+    improve(start, seed, {fit_cylinder, fit_cone, fit_sphere}, best);
+    for (const Eigen::Vector3d& line : generators(start)) {
+      if (best.type != SurfaceType::plane) break;
+      std::vector<int> strips;  // of a cylinder or cone, without what joins its ends smoothly
+      for (const int t : seed) {
+        if (std::abs(normal(t).dot(line)) <= kGeneratorTurn) strips.push_back(t);
       }
+      improve(start, strips, {fit_cylinder, fit_cone}, best);
     }
     if (best.type != SurfaceType::plane || is_plane(flat.triangles)) return best;
     const int own = group_[at(start)];
@@ -69,6 +74,35 @@ class Grower {
   }
 
  private:
+  using Fit = Primitive (*)(const FitData&);
+
+  // Replaces the best patch by one on a curved shape through a seed, where that is much larger.
+  void improve(int start, const std::vector<int>& seed, std::initializer_list<Fit> fits,
+               SmoothPatch& best) const {
+    if (groups_of(seed) < 3) return;
+    for (const Fit fit : fits) {
+      const SmoothPatch curved = grow(start, seed, fit);
+      const double needed = best.type == SurfaceType::plane ? kGain : 1.02;
+      if (area_of(curved.triangles) >= needed * area_of(best.triangles)) best = curved;
+    }
+  }
+
+  // Directions of the long sides of the start's plane, if it is a long strip between smooth sides.
+  std::vector<Eigen::Vector3d> generators(int start) const {
+    const int own = group_[at(start)];
+    std::vector<Eigen::Vector3d> sides;
+    for (const int t : flood(start, [&](int i) { return group_[at(i)] == own; })) {
+      for (int k = 0; k < 3; ++k) {
+        const int other = neighbours_[at(t)][at(k)];
+        if (!joined(t, other) || group_[at(other)] == own) continue;
+        const Eigen::Vector3d side = corner(surface_, t, (k + 1) % 3) - corner(surface_, t, k);
+        const double width = group_area_[at(own)] / std::max(side.norm(), 1e-300);
+        if (side.norm() >= kStripLength * width) sides.push_back(side.normalized());
+      }
+    }
+    return sides;
+  }
+
   Eigen::Vector3d normal(int t) const { return normal_.row(t).transpose(); }
   Eigen::Vector3d centroid(int t) const {
     return (corner(surface_, t, 0) + corner(surface_, t, 1) + corner(surface_, t, 2)) / 3.0;
@@ -244,7 +278,6 @@ class Grower {
 
   // The patch on the shape that the seed determines, grown and fitted in turn. Corners of a file's
   // facets lie on the true face; nodes of a mesh may lie within the sagitta of its chords.
-  template <class Fit>
   SmoothPatch grow(int start, std::vector<int> region, Fit fit) const {
     Primitive p;
     for (int i = 0; i < kGrowths; ++i) {

@@ -39,6 +39,10 @@ ROUNDED = m3.Manifold.batch_hull(
     [m3.Manifold.cylinder(30.0, 4.0, 4.0, 32).translate((x, y, 0)) for x in (4, 26) for y in (4, 6)]
 )  # 30 x 10 with edges of radius 4
 
+PIPE = m3.Manifold.cylinder(20.0, 5.0, 5.0, 48)
+CAPSULE = PIPE + m3.Manifold.sphere(5.0, 48).translate((0, 0, 20))  # the dome joins the side smoothly
+TAPERED = PIPE + m3.Manifold.cylinder(20.0, 5.0, 2.0, 48).translate((0, 0, 20))  # the cone joins it at 8.5°
+
 
 @pytest.mark.parametrize(
     ("solid", "point", "kind", "expected"),
@@ -52,6 +56,10 @@ ROUNDED = m3.Manifold.batch_hull(
         (ROUNDED, (15, 10, 15), "plane", 22 * 30),
         (ROUNDED, (0, 5, 15), "plane", 2 * 30),
         (ROUNDED, (1.2, 1.2, 15), "cylinder", chords(4.0, 32) / 4 * 30),
+        (CAPSULE, (5, 0, 10), "cylinder", chords(5.0, 48) * 20),
+        (CAPSULE, (0, 0, 25), "sphere", 2 * np.pi * 25),
+        (TAPERED, (5, 0, 10), "cylinder", chords(5.0, 48) * 20),
+        (TAPERED, (3.5, 0, 30), "cone", np.pi * (5 + 2) * np.hypot(20, 3)),
         (fem_surfaces.l_bracket(), (30, 10, 5), "plane", 47 * 20),
         (fem_surfaces.l_bracket(4), (30, 10, 5), "plane", 47 * 20),
         (fem_surfaces.l_bracket(), (12.8, 10, 5.0), "cylinder", 16 * 16 * np.sin(np.pi / 64) * 20),

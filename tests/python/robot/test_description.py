@@ -116,7 +116,7 @@ def test_a_joint_origin_that_is_no_rigid_motion_is_refused(robot, T):
         (-1.0, np.eye(3), "negative mass"),
         (np.nan, np.eye(3), "not finite"),
         (1.0, np.diag([1, 1, -1e-3]), "a principal moment is negative"),
-        (1.0, np.diag([1, 1, 2.1]), "exceeds the sum of the others"),
+        (1.0, np.diag([1, 1, 2.1]), "exceeds the sum of the others.*as_published accepts it"),
         (1.0, np.eye(3) + np.eye(3, k=1) * 0.1, "not symmetric"),
         (0.0, np.eye(3), "principal moments without mass"),
     ],
