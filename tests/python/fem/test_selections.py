@@ -102,3 +102,14 @@ def test_a_box_within_a_facet_cuts_it():
     named = label_surface(of, [Box((10, 5, 9), (12, 6, 11)), Near((0, 10, 5))])
     assert area(named.surface, np.flatnonzero(named.masks[0])) == pytest.approx(2.0)
     assert area(named.surface, np.flatnonzero(named.masks[1])) == pytest.approx(200.0)
+
+
+def test_boxes_within_one_facet_are_all_cut_out():
+    """What one box cuts leaves small facets in the others; they hold all of their area nevertheless."""
+    of = surface(fem_surfaces.box((100, 100, 1)))
+    corners = [(x, y) for x in (0, 96) for y in (0, 96)]
+    labeled = label_surface(of, [Box((x, y, -0.1), (x + 4, y + 4, 0.1)) for x, y in corners])
+    for (x, y), mask in zip(corners, labeled.masks, strict=True):
+        middles = labeled.surface.points[labeled.surface.triangles[mask]].mean(axis=1)
+        below = np.flatnonzero(mask)[middles[:, 2] < 1e-9]
+        assert area(labeled.surface, below) == pytest.approx(16.0), (x, y)
