@@ -142,8 +142,8 @@ def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> Labeled:
     it holds although it cuts the triangle of the surface they lie on.
     """
     cutting = [place for place in places if isinstance(place, Box) and not place.triangles(surface).any()]
-    for place in cutting:
-        surface = cut_by_box(surface, place.lower, place.upper)
+    for box in cutting:
+        surface = cut_by_box(surface, box.lower, box.upper)
     masks = np.array([place.triangles(surface) for place in places])
     kinds, face = np.unique(masks, axis=1, return_inverse=True)
     names = [f"region {i}" if kind.any() else "" for i, kind in enumerate(kinds.T)]
