@@ -6,6 +6,7 @@ import functools
 import hashlib
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,7 +55,7 @@ def evaluate(
     A CodesignError on the way (no mesh, say) gives a failed evaluation; anything else is a bug and is raised.
     Raises: StudyError if there is no such trajectory.
     """
-    find_trajectory(study.config, trajectory or study.config.flight.trajectory)
+    _check_trajectory(study.config, trajectory)
     try:
         return _evaluate(study, design, trajectory, cache)[0]
     except CodesignError as error:
@@ -63,22 +64,49 @@ def evaluate(
 
 def evaluate_with_fields(
     study: StudyData, design: Design, trajectory: str | None = None
-) -> tuple[Evaluation, dict[str, _core.PartAnalysis], dyn.FlightLog]:
-    """As `evaluate`, together with what its numbers were read from: stress field of each part, histories of the flight.
+) -> tuple[Evaluation, dict[str, _core.PartAnalysis], dyn.FlightLog | None]:
+    """As `evaluate`, together with what its numbers were read from: stress field of each part, the flight if any.
 
     Raises: CodesignError where the chain does.
     """
-    find_trajectory(study.config, trajectory or study.config.flight.trajectory)
+    _check_trajectory(study.config, trajectory)
     evaluation, result = _evaluate(study, design, trajectory, None)
     return evaluation, dict(zip(evaluation.parts, result.parts, strict=True)), result.flight
 
 
+def _check_trajectory(config: StudyConfig, trajectory: str | None) -> None:
+    """Raises: StudyError: there is no such trajectory, or one is named where nothing flies."""
+    if config.flight is not None or trajectory is not None:
+        find_trajectory(config, trajectory or config.flown.trajectory)
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """What the native code gave: analyses of the parts that were not known, the flight if there is one, times [s]."""
+
+    parts: list[_core.PartAnalysis]
+    flight: dyn.FlightLog | None
+    seconds: dict[str, float]
+
+
+def _compute(
+    study: StudyData, config: StudyConfig, cases: list[_core.PartCase], robot: RobotDescription, trajectory: str | None
+) -> Computed:
+    """Meshes and solves the parts; flies the robot if the study has a flight."""
+    if config.flight is None:
+        start = time.perf_counter()
+        return Computed([_core.analyse_part(case) for case in cases], None, {"fem": time.perf_counter() - start})
+    settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory))
+    with refusals(study.path):
+        result = _core.evaluate(cases, robot.to_text(), settings)
+    return Computed(list(result.parts), result.flight, result.seconds)
+
+
 def _evaluate(
     study: StudyData, design: Design, trajectory: str | None, cache: PartCache | None
-) -> tuple[Evaluation, _core.DesignResult]:
+) -> tuple[Evaluation, Computed]:
     start = time.perf_counter()
     config = study.configured(design)
-    settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory))
     parts = build_parts(study, design, config)
     stress = {name: stress_settings(config, name) for name in parts}
     keys = {name: _part_key(study, part, stress[name]) for name, part in parts.items()}
@@ -90,8 +118,7 @@ def _evaluate(
     robot = _assemble(study, config, parts, masses)
     cases = {name: part_case(part, stress[name]) for name, part in parts.items() if name not in known}
     built = time.perf_counter()
-    with refusals(study.path):
-        result = _core.evaluate(list(cases.values()), robot.to_text(), settings)
+    result = _compute(study, config, list(cases.values()), robot, trajectory)
     documents: dict[str, dict[str, Any]] = {}
     for name in parts:
         if name in known:
@@ -101,16 +128,7 @@ def _evaluate(
         documents[name] = part_document(masses[name], analysis)
         if cache is not None:
             cache.put(keys[name], documents[name])
-    flight = result.flight
-    clearances = _clearances(config, parts, robot, flight)
-    document = {
-        "parts": documents,
-        "flight": flight_document(
-            trajectory or config.flight.trajectory, flight, config.flight.duration_s, result.seconds["flight"]
-        )
-        | ({"interference": clearances} if clearances else {}),
-        "objective_families": objective_families(flight) if flight.completed else {},
-    }
+    document = {"parts": documents, **_flown(config, parts, robot, result, trajectory)}
     verdict = judge(config, document, study.functions)
     evaluation = Evaluation(
         design=design.to_dict(),
@@ -124,6 +142,22 @@ def _evaluate(
         provenance=provenance(study),
     )
     return evaluation, result
+
+
+def _flown(
+    config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, result: Computed, trajectory: str | None
+) -> dict[str, Any]:
+    """Flight and objective families of an evaluation; both empty without a flight."""
+    flight = result.flight
+    if flight is None:
+        return {"flight": {}, "objective_families": {}}
+    clearances = _clearances(config, parts, robot, flight)
+    name, wanted = trajectory or config.flown.trajectory, config.flown.duration_s
+    document = flight_document(name, flight, wanted, result.seconds["flight"])
+    return {
+        "flight": document | ({"interference": clearances} if clearances else {}),
+        "objective_families": objective_families(flight) if flight.completed else {},
+    }
 
 
 def build_parts(
@@ -211,7 +245,7 @@ def _clearances(
     slices = config.interference.slices
     placed = {part.name: (part.placements, _convex_pieces(parts[part.name], slices)) for part in config.parts}
     return flown_interference(
-        robot, config.interference, placed, joint_names(config.flight), history, config.flight.step_s
+        robot, config.interference, placed, joint_names(config.flown), history, config.flown.step_s
     )
 
 

@@ -55,7 +55,7 @@ def flight_document(trajectory: str, log: dyn.FlightLog, wanted: float, seconds:
 def objective_parts(log: dyn.FlightLog, family: str, config: StudyConfig) -> dict[str, float]:
     """What the members of an objective family are made of: momenta, and each joint group that counts."""
     parts = getattr(log, f"{family}_parts")
-    groups = [group.name for group in config.flight.joint_groups if group.velocity_weight > 0]
+    groups = [group.name for group in config.flown.joint_groups if group.velocity_weight > 0]
     named = {
         "linear_momentum": parts.linear_momentum,
         "angular_momentum": parts.angular_momentum,

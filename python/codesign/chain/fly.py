@@ -32,15 +32,15 @@ def fly_robot(
     Raises: UrdfError, StudyError.
     """
     config = study.config
-    settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory), jets)
+    settings = flight_settings(config.flown, find_trajectory(config, trajectory or config.flown.trajectory), jets)
     start = time.perf_counter()
-    model = dyn.load_urdf(robot, joints=joint_names(config.flight), as_published=as_published)
+    model = dyn.load_urdf(robot, joints=joint_names(config.flown), as_published=as_published)
     loaded = time.perf_counter()
     with refusals(study.path):
         log = dyn.simulate_flight(model, settings)
     end = time.perf_counter()
     completed = log.completed
-    document = flight_document(trajectory or config.flight.trajectory, log, config.flight.duration_s, end - loaded)
+    document = flight_document(trajectory or config.flown.trajectory, log, config.flown.duration_s, end - loaded)
     return {
         "robot": str(robot),
         "status": "completed" if completed else "lost",

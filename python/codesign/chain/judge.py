@@ -60,7 +60,7 @@ def judge(config: StudyConfig, document: Document, functions: Functions) -> Verd
     Raises: StudyError: an objective or limit names a number that the evaluation does not have.
     """
     flight = document["flight"]
-    lost = not flight["completed"]
+    lost = bool(flight) and not flight["completed"]  # no flight: parts alone are judged
     constraints: dict[str, float] = {}
     violations: dict[str, float] = {}
     reasons = []
@@ -103,9 +103,10 @@ def objectives(config: StudyConfig, document: Document, functions: Functions) ->
 
 
 def limits(config: StudyConfig) -> Iterator[Limit]:
-    """Everything that a study demands: a completed flight, and what its [constraints] say."""
+    """Everything that a study demands: a completed flight if it has one, and what its [constraints] say."""
     asked = config.constraints
-    yield Limit(quantity(FLIGHT_MISSED), most=0.0)
+    if config.flight is not None:
+        yield Limit(quantity(FLIGHT_MISSED), most=0.0)
     for key, least in asked.part_minima.items():
         if key == "safety_factor" and any(case.safety_factor_min for part in config.parts for case in part.load_cases):
             yield from case_limits(config, least)

@@ -14,7 +14,7 @@ from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields,
 from codesign.cli.export_folder import MANIFEST, export_folder, files_in
 from codesign.cli.export_formats import CAD, DEFAULT, LOG, ROBOT
 from codesign.cli.order import Order
-from codesign.cli.robot_files import write_robot_files
+from codesign.cli.robot_files import write_robot_files, write_urdf
 from codesign.errors import DesignError
 from codesign.fem.vtu import StressModel, write_vtu
 from codesign.files import write_text
@@ -64,8 +64,10 @@ def export_design(
             chain = beside.submit(evaluate_with_fields, study, design)
             _write_cad(order, folder / "cad")
             evaluation, analyses, flight = chain.result()
-        if any(kind in formats for kind in (*ROBOT, *LOG)):
+        if flight is not None and any(kind in formats for kind in (*ROBOT, *LOG)):
             write_robot_files(study, evaluation, placed, flight, formats, folder / "robot")
+        elif study.config.robot is not None and "urdf" in formats:
+            write_urdf(study, build_robot(study, design), placed, folder / "robot")
         models = {}
         if "vtu" in formats:
             models = {

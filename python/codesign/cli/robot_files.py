@@ -15,6 +15,7 @@ from codesign.chain.flight import find_trajectory, flight_settings
 from codesign.cli.export_formats import LOG, ROBOT
 from codesign.files import write_text
 from codesign.parts.component import Component
+from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
 from codesign.robot.collisions import ignored_pairs
 from codesign.robot.description import RobotDescription
@@ -50,7 +51,7 @@ def write_robot_files(
     """
     design = study.space.design(evaluation.design)
     config = study.configured(design)
-    settings = flight_settings(config.flight, find_trajectory(config, config.flight.trajectory))
+    settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
     simulated, logged = ("mjcf" in formats or "sdf" in formats), any(kind in formats for kind in LOG)
     robot = build_robot(study, design)
     folder.mkdir(exist_ok=True)
@@ -59,14 +60,14 @@ def write_robot_files(
     if simulated:
         _write_models(robot, settings, log, formats, folder)
     if logged:
-        words = {key: f"{value:g}" for key, value in design.items()}
-        words = {"study": study.name, **words, "trajectory": config.flight.trajectory}
+        words = {key: value_text(value) for key, value in design.items()}
+        words = {"study": study.name, **words, "trajectory": config.flown.trajectory}
         _write_log(log, settings, robot, words, formats, folder)
     if simulated or logged:
         document = flying_document(robot, settings) | {
             "study": {"name": study.name, "title": study.title},
             "design": evaluation.design,
-            "trajectory": config.flight.trajectory,
+            "trajectory": config.flown.trajectory,
             "objectives": evaluation.objectives,
         }
         write_text(folder / "robot.json", json.dumps(document, indent=1))

@@ -53,6 +53,8 @@ def validate(
     study = study if study is not None else study_of(directory)
     if study is None:
         raise StoreError(f"{directory}: the run's study cannot be loaded, so its designs cannot be flown")
+    if not study.trajectories:
+        raise StudyError(f"{directory}: its study {study.name!r} has no [flight], so there is nothing to validate on")
     run = read_report_data(directory, study)
     chosen = select(run, designs)
     if study.baseline is not None:

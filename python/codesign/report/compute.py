@@ -22,8 +22,10 @@ def compute_detail(study: Any, theta: Mapping[str, DesignValue], trajectory: str
     design = study.space.design(theta)
     evaluation, analyses, flight = evaluate_with_fields(study, design, trajectory)
     fields = {name: stress_field(analysis.mesh, analysis.result) for name, analysis in analyses.items()}
-    flown = trajectory or study.config.flight.trajectory
-    return Detail(evaluation, fields, history(study.configured(design).flight, flown, flight))
+    if flight is None:
+        return Detail(evaluation, fields, None)
+    flown = trajectory or study.config.flown.trajectory
+    return Detail(evaluation, fields, history(study.configured(design).flown, flown, flight))
 
 
 def history(flight: Any, trajectory: str, log: Any) -> FlightHistory:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from codesign.problem.design_space import DesignValue
 from codesign.report.link_meshes import LinkMesh, link_meshes, package_paths, read_mesh
+from codesign.robot.assembly import PartPlacement
 from codesign.robot.description import RobotDescription
 from codesign.transforms import Matrix
 
@@ -101,10 +102,11 @@ def robot_scene(
     parts = study.build_parts(checked)
     placed: dict[str, list[Piece]] = {}
     for part in config.parts:
-        for place in part.placements:
+        alone = [PartPlacement(link=robot.link_names[0])] if config.robot is None else []
+        for place in part.placements or alone:
             piece = _part_piece(part.name, parts[part.name], place, (fields or {}).get(part.name))
             placed.setdefault(place.link, []).append(piece)
-    real = _real_shapes(robot, frozenset(placed), config.robot.visuals, packages)
+    real = _real_shapes(robot, frozenset(placed), config.robot.visuals if config.robot else "", packages)
     colors = _materials(robot)
     pieces: list[Piece] = []
     for link in robot.link_names:
@@ -112,6 +114,8 @@ def robot_scene(
         if own and link in real:
             own = [Piece(link, points, triangles, own[0].color) for points, triangles in real[link]]
         pieces += placed.get(link) or own
+    if config.flight is None:
+        return RobotScene(robot, tuple(pieces), (), (), np.zeros((0, 3)), 1.0)
     joints = tuple(joint for group in config.flight.joint_groups for joint in group.joints)
     jets = config.flight.jets
     pushes = np.array(jets.axes or [DOWN] * len(jets.frames), dtype=float).reshape(-1, 3)

@@ -23,7 +23,7 @@ def objective_quantities(keys: Sequence[str], config: StudyConfig | None) -> tup
 
 
 def _with_groups(velocity: Quantity, config: StudyConfig) -> Quantity:
-    groups = config.flight.joint_groups
+    groups = config.flown.joint_groups
     counted = [f"{words(g.name).lower()} counted {_times(g)}" for g in groups if g.velocity_weight > 0]
     ignored = [words(g.name).lower() for g in groups if g.velocity_weight == 0]
     said = f"In this study: {listed(counted)}" if counted else "In this study no joint group is counted"
@@ -91,6 +91,8 @@ def _warning(config: StudyConfig, part: PartConfig) -> str:
 def flight_words(config: StudyConfig) -> str:
     """What one flight is, and what its numbers are good for."""
     flight = config.flight
+    if flight is None:
+        return "No flight: the parts alone are judged."
     trajectory = config.trajectories[flight.trajectory]
     calm = "calm" if trajectory.disturbances == type(trajectory.disturbances)() else "disturbed"
     return (

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta, field
 
+from codesign.errors import StudyError
 from codesign.robot.assembly import PartPlacement
 from codesign.robot.clearance import InterferenceSettings
 from codesign.study.flight_config import FlightConfig, TrajectoryConfig
@@ -247,25 +248,32 @@ class ExecutionConfig(Section, frozen=True, kw_only=True):
 
 
 class StudyConfig(Section, frozen=True, kw_only=True):
-    """The whole file."""
+    """The whole file. Without [flight] parts alone are judged; without [robot] they sit in none."""
 
     name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][^/\\\x00-\x1f]*$")]  # of folders and files
     title: str = ""
     description: str = ""
-    robot: RobotConfig
+    robot: RobotConfig | None = None
     variables: dict[str, VariableConfig]
     baseline: dict[str, float | str] = {}
     materials: dict[str, MaterialConfig] = {}
     parts: list[PartConfig]
     fem: FemConfig = FemConfig()
-    flight: FlightConfig
-    trajectories: dict[str, TrajectoryConfig]
+    flight: FlightConfig | None = None
+    trajectories: dict[str, TrajectoryConfig] = {}
     objectives: ObjectivesConfig = ObjectivesConfig()
     constraints: ConstraintsConfig = ConstraintsConfig()
     interference: InterferenceSettings | None = None
     validation: ValidationConfig = ValidationConfig()
     optimizer: OptimizerConfig = OptimizerConfig()
     execution: ExecutionConfig = ExecutionConfig()
+
+    @property
+    def flown(self) -> FlightConfig:
+        """The section [flight]. Raises: StudyError: the study has none, its parts are all that it judges."""
+        if self.flight is None:
+            raise StudyError(f"{self.name}: a study of parts alone; this needs its section [flight]")
+        return self.flight
 
 
 # Sections that decide the numbers of an evaluation; the rest (search, execution) does not enter the study's hash.

@@ -30,10 +30,11 @@ def study_identity(raw: RawStudy, path: Path, modules: Iterable[str]) -> Identit
     """
     files = {name: Path(str(sys.modules[name].__file__)) for name in modules}
     imports = imports_of(files, known=_belongs_to_engine)
+    robot_file = path.parent / raw["robot"]["urdf"] if raw.get("robot") else None
     settings = json.dumps({k: raw.get(k) for k in DECIDING_SECTIONS}, sort_keys=True)
     sources = {
         "study file": _digest([settings.encode()]),
-        "robot": _digest([(path.parent / raw["robot"]["urdf"]).read_bytes()]),
+        "robot": _digest([robot_file.read_bytes()] if robot_file else []),
         "code of the parts": files_hash(imports.files),
         "engine": engine_hash(),
     }

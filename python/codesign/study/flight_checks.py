@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from codesign.errors import UrdfError
+from codesign.problem.quantities import FAMILY, QUANTITIES
 from codesign.robot.clearance import InterferenceSettings, link_pieces
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, repeated, unknown
@@ -22,6 +23,9 @@ PER_JET = ("max_thrust_n", "max_thrust_rate_n_s", "min_thrust_n", "reaction_n_m_
 def flight_problems(config: StudyConfig) -> Iterator[Problem]:
     """What can be judged from the file alone."""
     flight = config.flight
+    if flight is None:
+        yield from _flightless_problems(config)
+        return
     yield from _time_problems(flight)
     yield from _joint_problems(flight)
     yield from _jet_problems(flight)
@@ -33,6 +37,21 @@ def flight_problems(config: StudyConfig) -> Iterator[Problem]:
     if flight.jet_model == "turbine" and flight.turbine is None:
         yield "flight.jet_model", "'turbine' needs [flight.turbine]"
     yield from _trajectory_problems(config)
+
+
+def _flightless_problems(config: StudyConfig) -> Iterator[Problem]:
+    """What needs a flight in a study that has none."""
+    for key, asked in (
+        ("trajectories", config.trajectories),
+        ("validation.trajectories", config.validation.trajectories),
+        ("interference", config.interference),
+    ):
+        if asked:
+            yield key, "needs the section [flight]"
+    for name in {*config.objectives.names, *config.constraints.limits}:
+        path = QUANTITIES[name].path if name in QUANTITIES else name
+        if name in FAMILY or path.startswith(("flight.", "objective_families.")):
+            yield "objectives or constraints", f"{name!r} needs the section [flight]; parts have mass, safety_factor, …"
 
 
 def _time_problems(flight: FlightConfig) -> Iterator[Problem]:
@@ -97,7 +116,7 @@ def _per_jet_problems(flight: FlightConfig) -> Iterator[Problem]:
 def _trajectory_problems(config: StudyConfig) -> Iterator[Problem]:
     if not config.trajectories:
         yield "trajectories", "a study needs at least one trajectory"
-    yield from unknown("flight.trajectory", "trajectory", config.flight.trajectory, config.trajectories)
+    yield from unknown("flight.trajectory", "trajectory", config.flown.trajectory, config.trajectories)
     for name in config.validation.trajectories:
         yield from unknown("validation.trajectories", "trajectory", name, config.trajectories)
     for name, trajectory in config.trajectories.items():
@@ -111,6 +130,8 @@ def _trajectory_problems(config: StudyConfig) -> Iterator[Problem]:
 def robot_problems(config: StudyConfig, robot: RobotDescription) -> Iterator[Problem]:
     """Names of joints, frames and links that the robot does not have."""
     flight = config.flight
+    if flight is None:
+        return
     for group in flight.joint_groups:
         for joint in group.joints:
             key = f"flight.joint_groups[{group.name}].joints"

@@ -29,6 +29,7 @@ from codesign.study.study import StudyData
 from codesign.study.user_modules import import_beside, module_file
 
 STUDIES = PACKAGE / "studies"
+BARE_ROBOT = '<robot name="none"><link name="none"/></robot>'
 AnyStudy = TypeVar("AnyStudy", bound=StudyData)
 
 
@@ -73,10 +74,7 @@ def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
     part_classes = {part.name: _part_class(part, path) for part in config.parts}
     functions = {name: _function(name, path) for name in own_functions(config)}
     _refuse(path, chain(reference_problems(config, part_classes), flight_problems(config)))
-    try:
-        robot = RobotDescription.load(path.parent / config.robot.urdf)
-    except UrdfError as error:
-        raise StudyError(f"{path}: robot.urdf: {error}") from error
+    robot = _robot(config, path)
     modules = {cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()}
     return kind(
         source=source if source in shipped_studies() else str(path),
@@ -89,6 +87,16 @@ def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
         base_robot=robot,
         identity=study_identity(raw, path, modules),
     )
+
+
+def _robot(config: StudyConfig, path: Path) -> RobotDescription:
+    """The robot of a study; one bare link where it has none."""
+    if config.robot is None:
+        return RobotDescription.from_text(BARE_ROBOT)
+    try:
+        return RobotDescription.load(path.parent / config.robot.urdf)
+    except UrdfError as error:
+        raise StudyError(f"{path}: robot.urdf: {error}") from error
 
 
 def _parse(path: Path) -> RawStudy:

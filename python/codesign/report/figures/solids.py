@@ -119,7 +119,8 @@ def posture(data: FigureData, evaluation: Evaluation) -> tuple[Array, Matrix]:
     """Joint positions and base pose in mid-flight, or those at the start if the flight was not kept."""
     detail = data.detail(evaluation)
     if detail is None or detail.flight is None:
-        groups = data.study.config.flight.joint_groups
+        flight = data.study.config.flight
+        groups = [] if flight is None else flight.joint_groups
         return np.array([angle for group in groups for angle in group.initial_rad], dtype=float), np.eye(4)
     k = sample_at(detail.flight, hover_time(data.study, detail.flight))
     return detail.flight["joint_positions"][k], base_pose(detail.flight, k)
