@@ -38,9 +38,7 @@ std::string place_text(const Eigen::Vector3d& p) {
 
 TopologyKeeper::TopologyKeeper(const PreparedSurface& prepared, const SizeField& size,
                                const MeshOptions& options)
-    : prepared_(prepared),
-      size_(size),
-      options_(options) {}
+    : prepared_(prepared), size_(size), options_(options) {}
 
 bool TopologyKeeper::accepts(const TetMesh& mesh) {
   const Topology found = measure_topology(boundary_triangles(mesh));

@@ -30,7 +30,8 @@ class Mesher:
         max_questions: int = MAX_QUESTIONS,
         time_limit: float = TIME_LIMIT,
     ) -> None:
-        self._size, self._options = size, {} if simplify else {"simplify": 0.0}
+        self._size = size
+        self._options: dict[str, Any] = {} if simplify else {"simplify": 0.0}
         self._questions = max_questions
         self._limit, self._seconds = time_limit, 0.0
 
