@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from codesign import dynamics as dyn
 from codesign.errors import LibraryError
+from codesign.files import temporary_folder
 from codesign.transforms import Matrix, quaternion
 
 JOINTS, JETS, COMMANDS, BASE = "/joint_states", "/jets", "/jet_commands", "/odom"
@@ -42,8 +42,8 @@ def write_mcap(
         raise LibraryError.of(error, "a flight log as MCAP") from error
     path = Path(path)
     store = get_typestore(Stores.ROS2_HUMBLE)
-    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as folder:
-        bag = Path(folder) / "bag"
+    with temporary_folder(path) as folder:
+        bag = folder / "bag"
         writer = Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP)
         writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
         with writer:

@@ -19,12 +19,12 @@ print("begun", flush=True)
 fem.tetrahedralize(surface, 2e-4, max_vertices=10**9, time_limit=1e6)
 """,
     "a factorization, which asks nobody": """
-mesh = box_mesh((34, 34, 34), lambda x: x)
+mesh = box_mesh((20, 20, 20), lambda x: x)
 print("begun", flush=True)
 fem.StaticSystem(mesh, steel, [fem.Support(fem.faces_with_normal([-1, 0, 0]))], solver="direct", memory_limit=1e12)
 """,
     "eigenvalues by iteration": """
-mesh = box_mesh((26, 26, 26), lambda x: x)
+mesh = box_mesh((20, 20, 20), lambda x: x)
 print("begun", flush=True)
 fem.natural_frequencies(mesh, steel, [], 30, memory_limit=3e8)
 """,
