@@ -280,8 +280,12 @@ void bind_report(py::module_& m) {
       .def_readonly("peeled", &MeshReport::peeled, "flat boundary elements removed")
       .def_readonly("refinements", &MeshReport::refinements,
                     "rounds of smaller elements that the surface's topology asked for")
+      .def_readonly(
+          "small_faults", &MeshReport::small_faults,
+          "places where the boundary tears on ledges of at most 0.05 mm and 0.0005 of the "
+          "extent, which no element follows")
       .def_readonly("genus", &MeshReport::genus,
-                    "of each closed piece of the boundary, the same as of the surface")
+                    "of each closed piece of the surface, and of the boundary but for small faults")
       .def_property_readonly(
           "surface_distance",
           [](const MeshReport& report) {

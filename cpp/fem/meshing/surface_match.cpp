@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <map>
 
 namespace codesign::fem {
 namespace {
@@ -34,7 +36,7 @@ SurfaceMesh curved_boundary(const TetMesh& mesh) {
 }
 
 void add_edges_off_patches(const TetMesh& mesh, const Triangles& triangles,
-                           const SolidOracle& oracle, std::vector<Vector3d>& places) {
+                           const SolidOracle& oracle, std::vector<Mismatch>& found) {
   const Neighbours neighbours = triangle_neighbours(triangles);
   for (std::size_t t = 0; t < neighbours.size(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -47,18 +49,52 @@ void add_edges_off_patches(const TetMesh& mesh, const Triangles& triangles,
       const Vector3d middle = 0.5 * (a + b);
       const double off = std::max((oracle.nearest(middle, p).point - middle).norm(),
                                   (oracle.nearest(middle, q).point - middle).norm());
-      if (off > kOffPatch * (b - a).norm()) places.push_back(middle);
+      if (off > kOffPatch * (b - a).norm())
+        found.push_back({middle, (oracle.nearest(middle, -1).point - middle).norm()});
     }
 }
 
+double shortest_edge(const SurfaceMesh& surface, Eigen::Index t) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k)
+    shortest = std::min(shortest, (corner(surface, t, (k + 1) % 3) - corner(surface, t, k)).norm());
+  return shortest;
+}
+
+// Edges without exactly two sides, and points where the boundary only touches itself.
+void add_non_manifold(const SurfaceMesh& boundary, std::vector<Mismatch>& found) {
+  const Triangles& triangles = boundary.triangles;
+  std::map<int, double> size_at;  // of points that are not manifold
+  for (const int i : non_manifold_points(triangles)) size_at[i] = -1.0;
+  const Neighbours neighbours = triangle_neighbours(triangles);
+  for (std::size_t t = 0; t < neighbours.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      if (neighbours[t][static_cast<std::size_t>(k)] >= 0) continue;
+      const auto row = static_cast<Eigen::Index>(t);
+      const double length = (corner(boundary, row, (k + 1) % 3) - corner(boundary, row, k)).norm();
+      for (const int i : {triangles(row, k), triangles(row, (k + 1) % 3)})
+        size_at[i] = std::max(size_at[i], length);
+    }
+  std::map<int, double> shortest;  // edge at points without such an edge
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const auto at = size_at.find(triangles(t, k));
+      if (at == size_at.end() || at->second >= 0.0) continue;
+      const auto [value, fresh] = shortest.try_emplace(at->first, shortest_edge(boundary, t));
+      if (!fresh) value->second = std::min(value->second, shortest_edge(boundary, t));
+    }
+  for (const auto& [point, size] : size_at)
+    found.push_back({boundary.points.row(point).transpose(), size >= 0.0 ? size : shortest[point]});
+}
+
 void add_sides_across(const SurfaceMesh& boundary, const SurfaceMesh& surface,
-                      const SolidOracle& oracle, std::vector<Vector3d>& places) {
+                      const SolidOracle& oracle, std::vector<Mismatch>& found) {
   for (Eigen::Index t = 0; t < boundary.triangles.rows(); ++t) {
     const Vector3d centre =
         (corner(boundary, t, 0) + corner(boundary, t, 1) + corner(boundary, t, 2)) / 3.0;
-    const int nearest = oracle.nearest(centre, -1).triangle;
-    if (triangle_normal(boundary, t).dot(triangle_normal(surface, nearest)) < kAcross)
-      places.push_back(centre);
+    const SolidOracle::Hit nearest = oracle.nearest(centre, -1);
+    if (triangle_normal(boundary, t).dot(triangle_normal(surface, nearest.triangle)) < kAcross)
+      found.push_back({centre, (nearest.point - centre).norm()});
   }
 }
 
@@ -90,15 +126,20 @@ SurfaceDistance surface_distance(const TetMesh& mesh, const SurfaceMesh& surface
   return farthest;
 }
 
-std::vector<Vector3d> find_mismatches(const TetMesh& mesh, const SurfaceMesh& surface,
+std::vector<Mismatch> find_mismatches(const TetMesh& mesh, const SurfaceMesh& surface,
                                       const SolidOracle& oracle) {
-  std::vector<Vector3d> places;
+  std::vector<Mismatch> found;
   const SurfaceMesh boundary = boundary_surface(mesh);
-  for (const int i : non_manifold_points(boundary.triangles)) places.push_back(node(mesh, i));
-  add_edges_off_patches(mesh, boundary.triangles, oracle, places);
-  add_sides_across(boundary, surface, oracle, places);
-  if (places.empty()) places.push_back(surface_distance(mesh, surface, oracle).place);
-  return places;
+  add_non_manifold(boundary, found);
+  add_sides_across(boundary, surface, oracle, found);
+  if (found.empty()) add_edges_off_patches(mesh, boundary.triangles, oracle, found);
+  if (found.empty()) {
+    const SurfaceDistance farthest = surface_distance(mesh, surface, oracle);
+    found.push_back({farthest.place, farthest.distance});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Mismatch& a, const Mismatch& b) { return a.size > b.size; });
+  return found;
 }
 
 }  // namespace codesign::fem

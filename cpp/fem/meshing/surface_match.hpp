@@ -23,10 +23,19 @@ struct SurfaceDistance {
 SurfaceDistance surface_distance(const TetMesh& mesh, const SurfaceMesh& surface,
                                  const SolidOracle& oracle);
 
-// Places where a boundary of another topology than its surface goes wrong: it is not manifold,
-// edges between two patches are far from one of them, sides stand across the surface; at least the
-// place of the largest distance. mesh.boundary_face: patches of the surface.
-std::vector<Eigen::Vector3d> find_mismatches(const TetMesh& mesh, const SurfaceMesh& surface,
-                                             const SolidOracle& oracle);
+// A place where the boundary of a mesh goes another way than its surface, and about how large the
+// fault is.
+struct Mismatch {
+  Eigen::Vector3d place;  // m
+  double size;            // m
+};
+
+// Where a boundary of another topology than its surface goes wrong, the largest first: it is not
+// manifold (size: the edge, or the shortest one at the point), or sides stand across the surface
+// (size: how far their middle is from it); if there are none, edges between two patches that are
+// off one of them; if there are none, the place of the largest distance. mesh.boundary_face:
+// patches of the surface.
+std::vector<Mismatch> find_mismatches(const TetMesh& mesh, const SurfaceMesh& surface,
+                                      const SolidOracle& oracle);
 
 }  // namespace codesign::fem

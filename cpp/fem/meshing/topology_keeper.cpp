@@ -10,6 +10,10 @@
 namespace codesign::fem {
 namespace {
 
+// Faults below both are smaller than what surfaces are simplified by.
+constexpr double kResolved = 5e-5;  // m
+constexpr double kOfExtent = 5e-4;
+
 int total_genus(const Topology& topology) {
   int genus = 0;
   for (const int euler : topology.euler) genus += genus_of(euler);
@@ -21,11 +25,11 @@ std::string difference(const Topology& found, const Topology& wanted) {
   if (found.euler.size() != wanted.euler.size())
     return std::to_string(found.euler.size()) + " closed boundaries instead of " +
            std::to_string(wanted.euler.size());
-  if (found.euler != wanted.euler)
-    return "genus " + std::to_string(total_genus(found)) + " instead of " +
-           std::to_string(total_genus(wanted));
-  return std::to_string(found.open_edges + found.pinched_points) +
-         " edges and points where the boundary is not manifold";
+  if (!found.is_manifold())
+    return std::to_string(found.open_edges + found.pinched_points) +
+           " edges and points where the boundary is not manifold";
+  return "genus " + std::to_string(total_genus(found)) + " instead of " +
+         std::to_string(total_genus(wanted));
 }
 
 std::string place_text(const Eigen::Vector3d& p) {
@@ -43,8 +47,17 @@ TopologyKeeper::TopologyKeeper(const PreparedSurface& prepared, const SizeField&
 bool TopologyKeeper::accepts(const TetMesh& mesh) {
   const Topology found = measure_topology(boundary_triangles(mesh));
   if (found == prepared_.topology) return true;
-  const std::vector<Eigen::Vector3d> places =
+  const std::vector<Mismatch> mismatches =
       find_mismatches(mesh, prepared_.surface, prepared_.oracle);
+  const double resolved = std::min(kResolved, kOfExtent * extent(prepared_.surface.points));
+  std::vector<Eigen::Vector3d> places;
+  for (const Mismatch& mismatch : mismatches)
+    if (mismatch.size > resolved) places.push_back(mismatch.place);
+  if (places.empty() && found.euler.size() == prepared_.topology.euler.size()) {
+    small_ = static_cast<int>(mismatches.size());
+    return true;
+  }
+  if (places.empty()) places.push_back(mismatches.front().place);
   mismatch_ = "the mesh has another topology than its surface near " + place_text(places.front()) +
               ": " + difference(found, prepared_.topology);
   if (round_ == options_.topology_rounds)
@@ -61,6 +74,7 @@ std::string TopologyKeeper::explain(const std::string& reason) const {
 
 void TopologyKeeper::report(TetMesh& mesh) const {
   mesh.report.refinements = round_;
+  mesh.report.small_faults = small_;
   for (const int euler : prepared_.topology.euler) mesh.report.genus.push_back(genus_of(euler));
   if (options_.measure_distance)
     mesh.report.surface_distance =

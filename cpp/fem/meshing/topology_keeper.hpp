@@ -13,7 +13,9 @@
 namespace codesign::fem {
 
 // Compares the boundary of a mesh with the surface: as many closed pieces, each of the same Euler
-// characteristic, manifold. Where they differ it asks for smaller elements, a few times.
+// characteristic, manifold. Where they differ it asks for smaller elements, a few times. Faults no
+// larger than what surfaces are simplified by (0.05 mm, 0.0005 of the extent) are only counted:
+// they sit on ledges of that size, which elements cannot follow at any edge length.
 class TopologyKeeper {
  public:
   // `prepared` must outlive the keeper.
@@ -39,6 +41,7 @@ class TopologyKeeper {
   SizeField size_;
   MeshOptions options_;
   int round_ = 0;
+  int small_ = 0;                  // faults too small to be refused
   std::string mismatch_;           // of the last mesh and where; empty before the first one
   std::vector<WallSample> walls_;  // once a mesh was refused
 };

@@ -269,7 +269,7 @@ class MeshReport:
     @property
     def genus(self) -> list[int]:
         """
-        of each closed piece of the boundary, the same as of the surface
+        of each closed piece of the surface, and of the boundary but for small faults
         """
     @property
     def peeled(self) -> int:
@@ -285,6 +285,11 @@ class MeshReport:
     def refinements(self) -> int:
         """
         rounds of smaller elements that the surface's topology asked for
+        """
+    @property
+    def small_faults(self) -> int:
+        """
+        places where the boundary tears on ledges of at most 0.05 mm and 0.0005 of the extent, which no element follows
         """
     @property
     def surface_distance(self) -> float | None:

@@ -169,6 +169,7 @@ def _document(path: Path, material: fem.Material, solved: Solved, smooth: bool) 
             "collapse_distance": report.collapse_distance,
             "peeled": report.peeled,
             "refinements": report.refinements,
+            "small_faults": report.small_faults,
             "genus": report.genus,
             "surface_distance": report.surface_distance,
         },
