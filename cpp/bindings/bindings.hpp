@@ -9,8 +9,9 @@ void bind_dynamics(
     pybind11::module_& m);               // submodule codesign._core.dynamics: models and algorithms
 void bind_flight(pybind11::module_& m);  // the same submodule: box QP, flight
 void bind_convex(pybind11::module_& m);  // the same submodule: distances of convex hulls
-void bind_mesh(pybind11::module_& m);    // submodule codesign._core.fem: surfaces, tetrahedra
-void bind_static(pybind11::module_& m);  // the same submodule: elasticity, results
+void bind_surface(pybind11::module_& m);  // submodule codesign._core.fem: closed surfaces
+void bind_mesh(pybind11::module_& m);     // the same submodule: sizes, tetrahedra
+void bind_static(pybind11::module_& m);   // the same submodule: elasticity, results
 void bind_evaluate(
     pybind11::module_& m);  // codesign._core.evaluate: meshes, solves, flies in one call
 

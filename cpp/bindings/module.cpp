@@ -46,6 +46,7 @@ PYBIND11_MODULE(_core, m) {
   codesign::bind_flight(dynamics);
   codesign::bind_convex(dynamics);
   py::module_ fem = m.def_submodule("fem", "Surfaces, tetrahedra and linear elasticity.");
+  codesign::bind_surface(fem);
   codesign::bind_mesh(fem);
   codesign::bind_static(fem);
   codesign::bind_evaluate(m);
