@@ -36,7 +36,7 @@ class Column:
 
     @property
     def name(self) -> str:
-        """quantity, subject and unit: joint_position.l_elbow_rad."""
+        """quantity, subject and unit: joint_position.elbow_rad."""
         stem = f"{self.quantity}.{self.subject}" if self.subject else self.quantity
         unit = NAMES_OF_UNITS.get(self.unit, self.unit)
         return f"{stem}_{unit}" if unit else stem

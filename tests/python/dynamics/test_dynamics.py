@@ -216,6 +216,6 @@ print(dyn.mass_matrix(model, [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]], [0.3, 0.
 
 
 def test_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(UrdfError, match="unique"):
+    with pytest.raises(UrdfError, match="defined twice"):
         dyn.load_urdf(ARM.replace('"tip"', '"upper"'))
     assert capfd.readouterr() == ("", "")

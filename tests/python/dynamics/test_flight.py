@@ -82,7 +82,7 @@ def test_settings_name_what_is_wrong(shared_data: Path) -> None:
     settings.initial_joints = np.zeros(22)
     with pytest.raises(ValueError, match=r"initial_joints: has 22 values, must have one per joint \(23\)"):
         settings.validate()
-    with pytest.raises(ValueError, match="joints"):
+    with pytest.raises(ValueError, match="actuators: is empty"):
         dyn.simulate_flight(load(shared_data, "optim1"), dyn.FlightSettings())
 
 

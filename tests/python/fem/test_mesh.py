@@ -187,7 +187,7 @@ def test_the_same_surface_gives_the_same_mesh():
 
 def test_meshing_stops_at_its_limits():
     with pytest.raises(MeshError, match="time_limit"):
-        fem.tetrahedralize(box(), edge_length=0.01, time_limit=0.05)
+        fem.tetrahedralize(box(), edge_length=0.02, time_limit=0.05)
     with pytest.raises(MeshError, match="max_vertices"):
         fem.tetrahedralize(box(), edge_length=0.05, max_vertices=500)
 

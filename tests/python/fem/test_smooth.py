@@ -140,10 +140,10 @@ def test_facets_are_taken_literally_if_their_smooth_surface_cannot_be_meshed(tmp
     path = write_stl(tmp_path / "rod.stl", extruded([circle(4.5, 12)], 30.0))
     mesh = fem.tetrahedralize
 
-    def refuse(surface, size):
+    def refuse(surface, size, **options):
         if len(surface.triangles) > 100:
             raise MeshError("too fine")
-        return mesh(surface, size)
+        return mesh(surface, size, **options)
 
     monkeypatch.setattr(fem, "tetrahedralize", refuse)
     arguments = (path, 1e-3, named_material("ergal"), ["near:0,0,0"], ["normal:0,0,1: 0 0 1000"], 2.0)

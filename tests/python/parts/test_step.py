@@ -144,7 +144,7 @@ def test_schema_is_the_one_asked_for(schema: str, words: str, tmp_path: Path) ->
     write_step(BRACKET, tmp_path / "part.step", schema=schema)
     text = (tmp_path / "part.step").read_text()
     assert words in text.partition("ENDSEC")[0]
-    assert "SI_UNIT(.MILLI.,.METER.)" in text
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text
     with pytest.raises(ValueError, match="schema = 'AP203'"):
         write_step(BRACKET, tmp_path / "other.step", schema="AP203")
     assert [file.name for file in tmp_path.iterdir()] == ["part.step"]
