@@ -144,7 +144,7 @@ TEST(Buckling, FactorsScaleWithTheLoadAndTurnWithItsSign) {
   EXPECT_EQ(pulled.factor.size(), 0);
   EXPECT_EQ(pulled.shape.cols(), 0);
   EXPECT_NEAR(pulled.reversed, pressed.factor[0], 1e-8 * pressed.factor[0]);
-  EXPECT_THROW(press(mesh, 0.0, 2), ModelError);  // nothing is loaded
+  EXPECT_THROW(press(mesh, 0.0, 2), codesign::ModelError);  // nothing is loaded
 }
 
 TEST(Buckling, ShapesAreScaledAndHeldAtTheSupports) {

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "fem/mesh/mesh_quality.hpp"
+#include "fem/meshing/mesh_watch.hpp"
 #include "fem/meshing/tet_improve.hpp"
 
 namespace codesign::fem {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 // A double pyramid over a ring of points, with the tips 0 and 1, and its surface: one triangle a
 // patch, two at each edge of the ring.
@@ -69,11 +68,16 @@ Sample octahedron(double shift) {
   return sample;
 }
 
+int improve(Sample& sample, double angle) {
+  const SolidOracle oracle(sample.surface, sample.patches());
+  MeshWatch watch{MeshOptions{}};
+  return improve_tets(sample.mesh, angle, oracle, watch);
+}
+
 TEST(TetImprove, MovesAPointOutOfAFlatPlace) {
   Sample sample = octahedron(0.47);
   ASSERT_LT(measure_quality(sample.quadratic()).min_dihedral, 10 * kDegree);
-  const SolidOracle oracle(sample.surface, sample.patches());
-  EXPECT_EQ(improve_tets(sample.mesh, 15 * kDegree, oracle), 0);
+  EXPECT_EQ(improve(sample, 15 * kDegree), 0);
   const TetMesh mesh = sample.quadratic();
   EXPECT_GE(measure_quality(mesh).min_dihedral, 15 * kDegree);
   EXPECT_NEAR(measure_quality(mesh).volume, 4.0 / 3.0, 1e-14);
@@ -86,8 +90,7 @@ TEST(TetImprove, MovesAPointOutOfAFlatPlace) {
 TEST(TetImprove, LeavesGoodElementsAlone) {
   Sample sample = octahedron(0.0);
   const std::vector<Eigen::Vector3d> before = sample.mesh.points;
-  EXPECT_EQ(improve_tets(sample.mesh, 10 * kDegree, SolidOracle(sample.surface, sample.patches())),
-            0);
+  EXPECT_EQ(improve(sample, 10 * kDegree), 0);
   EXPECT_EQ(sample.mesh.points, before);
   EXPECT_EQ(sample.mesh.tets.size(), 8u);
 }
@@ -105,8 +108,7 @@ TEST(TetImprove, RemovesAnEdge) {
   }
   const MeshQuality before = measure_quality(sample.quadratic());
   ASSERT_GT(before.max_dihedral, 160 * kDegree);
-  EXPECT_EQ(improve_tets(sample.mesh, 20 * kDegree, SolidOracle(sample.surface, sample.patches())),
-            0);
+  EXPECT_EQ(improve(sample, 20 * kDegree), 0);
   EXPECT_EQ(sample.mesh.tets.size(), 2u);
   const MeshQuality after = measure_quality(sample.quadratic());
   EXPECT_LT(after.max_dihedral, 120 * kDegree);
