@@ -21,6 +21,7 @@ namespace codesign::fem {
 namespace {
 
 constexpr double kTolerance = 1e-5;  // relative change of a factor; its error is far smaller
+constexpr double kIterationTolerance = 1e-8;  // the same where changes shrink by a factor a round
 constexpr double kVolumeShare = 0.01;
 constexpr double kStressLimit = 0.25;  // of the shear modulus, see BucklingModes
 
@@ -150,6 +151,7 @@ BucklingModes buckling_by_iteration(const TetMesh& mesh, const Material& materia
       WantedEigenvalues least = wanted;
       least.largest = 0;
       least.smallest = most;
+      least.tolerance = kIterationTolerance;
       return lowest_eigenpairs(pencil, start, least);
     };
     const Eigenpairs load = extreme(1.0, wanted.largest);
