@@ -25,6 +25,7 @@ from codesign._core.dynamics import (
     QpStatus,
     RateIntegrator,
     ReferenceSettings,
+    Trim,
     Turbine,
     Weights,
     bias_forces,
@@ -52,6 +53,7 @@ from codesign._core.dynamics import (
     potential_energy,
     simulate_flight,
     solve_box_qp,
+    trim_hover,
 )
 
 __all__ = [
@@ -79,6 +81,7 @@ __all__ = [
     "QpStatus",
     "RateIntegrator",
     "ReferenceSettings",
+    "Trim",
     "Turbine",
     "Weights",
     "bias_forces",
@@ -106,4 +109,5 @@ __all__ = [
     "potential_energy",
     "simulate_flight",
     "solve_box_qp",
+    "trim_hover",
 ]
