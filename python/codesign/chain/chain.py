@@ -137,6 +137,7 @@ def _evaluate(
         objectives=verdict.objectives,
         constraints=verdict.constraints,
         violations=verdict.violations,
+        margins=verdict.margins,
         **document,
         seconds={"geometry": built - start, **result.seconds, "total": time.perf_counter() - start},
         provenance=provenance(study),

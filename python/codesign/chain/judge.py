@@ -29,15 +29,15 @@ class Limit:
     most: float | None = None
     scale: float = 1.0
 
-    def violation(self, value: float | None) -> float:
-        """By how much of the scale the bound is missed; 0: it holds. None: a number without bound (no buckling)."""
+    def margin(self, value: float | None) -> float:
+        """By how much of the scale the bound is kept; below 0: missed. None: a number without bound (no buckling)."""
         if self.least is not None:
-            return 0.0 if value is None else max(0.0, (self.least - value) / self.scale)
+            return math.inf if value is None else (value - self.least) / self.scale
         if self.most is None:
-            return 0.0
+            return math.inf
         if value is None:
             raise StudyError(f"constraints.limits.{self.quantity.key}: the evaluation has no such number")
-        return max(0.0, (value - self.most) / self.scale)
+        return (self.most - value) / self.scale
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +49,7 @@ class Verdict:
     objectives: dict[str, float] = field(default_factory=dict)
     constraints: dict[str, float] = field(default_factory=dict)
     violations: dict[str, float] = field(default_factory=dict)
+    margins: dict[str, float] = field(default_factory=dict)
 
 
 def judge(config: StudyConfig, document: Document, functions: Functions) -> Verdict:
@@ -62,7 +63,7 @@ def judge(config: StudyConfig, document: Document, functions: Functions) -> Verd
     flight = document["flight"]
     lost = bool(flight) and not flight["completed"]  # no flight: parts alone are judged
     constraints: dict[str, float] = {}
-    violations: dict[str, float] = {}
+    margins: dict[str, float] = {}
     reasons = []
     for limit in limits(config):
         value = value_of(document, limit.quantity, functions)
@@ -70,20 +71,21 @@ def judge(config: StudyConfig, document: Document, functions: Functions) -> Verd
             constraints[limit.quantity.key] = value
         if value is None and lost:
             continue
-        violation = limit.violation(value)
-        violations[limit.quantity.key] = max(violation, violations.get(limit.quantity.key, 0.0))
-        if violation > 0.0 and limit.quantity.key != FLIGHT_MISSED:
+        key, margin = limit.quantity.key, limit.margin(value)
+        margins[key] = min(margin, margins.get(key, math.inf))
+        if margin < 0.0 and key != FLIGHT_MISSED:
             reasons += misses(document, limit, value)
     if lost:
         reasons.append(loss(flight))
     constraints |= watched(document, constraints)
-    feasible = not any(violations.values())
+    feasible = not any(margin < 0.0 for margin in margins.values())
     return Verdict(
         status="feasible" if feasible else "infeasible",
         reason=None if feasible else "; ".join(reasons),
         objectives={} if lost else objectives(config, document, functions),
         constraints=constraints,
-        violations=violations,
+        violations={key: max(0.0, -margin) for key, margin in margins.items()},
+        margins={key: margin for key, margin in margins.items() if math.isfinite(margin)},
     )
 
 

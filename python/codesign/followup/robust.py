@@ -93,6 +93,7 @@ def aggregate(results: Mapping[str, Evaluation], statistic: Statistic) -> Evalua
         },
         constraints=_constraints(results),
         violations=_worst([result.violations for result in results.values()]),
+        margins=_least([result.margins for result in results.values()]),
         parts=first.parts,
         flight={
             "trajectory": ", ".join(results),
@@ -132,6 +133,11 @@ def _constraints(results: Mapping[str, Evaluation]) -> dict[str, float]:
 def _worst(values: Sequence[Mapping[str, float]]) -> dict[str, float]:
     names = dict.fromkeys(name for entry in values for name in entry)
     return {name: max(entry.get(name, 0.0) for entry in values) for name in names}
+
+
+def _least(values: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    names = dict.fromkeys(name for entry in values for name in entry)
+    return {name: min(entry[name] for entry in values if name in entry) for name in names}
 
 
 def _sum(values: Sequence[Mapping[str, float]]) -> dict[str, float]:

@@ -20,6 +20,7 @@ class Evaluation:
     status: `feasible`; `infeasible` (constraints violated, numbers valid); `failed` (no numbers, `reason` says why).
     objectives: the family that the study minimizes; empty if the flight was lost (infeasible) or the evaluation failed.
     violations: how far each constraint is violated, relative to its limit; 0 where it holds. Ranking uses their sum.
+    margins: the same with the other sign and, where a constraint holds, by how much; absent where it has no number.
     """
 
     design: dict[str, DesignValue]
@@ -29,6 +30,7 @@ class Evaluation:
     objective_families: dict[str, dict[str, float]] = field(default_factory=dict)
     constraints: dict[str, float] = field(default_factory=dict)
     violations: dict[str, float] = field(default_factory=dict)
+    margins: dict[str, float] = field(default_factory=dict)
     parts: dict[str, dict[str, Any]] = field(default_factory=dict)
     flight: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)

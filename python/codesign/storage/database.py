@@ -18,7 +18,7 @@ from codesign.errors import StoreError
 DATABASE = "run.sqlite"
 LOCK = "run.lock"
 APPLICATION_ID = 0x636F6473  # "cods": tells our files from other SQLite files
-VERSION = 1
+VERSION = 2
 SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE evaluations (
@@ -31,7 +31,7 @@ CREATE TABLE evaluations (
   status TEXT NOT NULL CHECK (status IN ('queued', 'running', 'feasible', 'infeasible', 'failed')),
   reason TEXT,
   design TEXT NOT NULL,             -- JSON objects from here on, as in Evaluation
-  objectives TEXT, objective_families TEXT, constraints TEXT, violations TEXT,
+  objectives TEXT, objective_families TEXT, constraints TEXT, violations TEXT, margins TEXT,
   parts TEXT, flight TEXT, seconds TEXT, provenance TEXT,
   cached INTEGER NOT NULL DEFAULT 0, worker TEXT, wall_seconds REAL, finished TEXT,
   UNIQUE (grid, trajectory, study_hash)
@@ -48,7 +48,9 @@ CREATE TABLE sessions (
   provenance TEXT NOT NULL          -- JSON: host, pid, versions, workers
 );
 """
-MIGRATIONS: dict[int, str] = {}  # version -> script that makes it version + 1
+MIGRATIONS = {  # version -> script that makes it version + 1
+    1: "ALTER TABLE evaluations ADD COLUMN margins TEXT; UPDATE evaluations SET margins = '{}';",
+}
 
 
 def now() -> str:

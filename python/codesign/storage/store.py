@@ -38,6 +38,7 @@ JSON_FIELDS = (
     "objective_families",
     "constraints",
     "violations",
+    "margins",
     "parts",
     "flight",
     "seconds",
@@ -91,7 +92,10 @@ class RunStore:
 
     @classmethod
     def read(cls, out: str | Path) -> RunStore:
-        """An existing run for reading only, also while another process writes it, also from a read-only place."""
+        """An existing run for reading only, also while another process writes it, also from a read-only place.
+
+        A run of an older format is brought up to date first, as by `open`. Raises: StoreError.
+        """
         path = existing(out)
         errors = []
         for mode in ("mode=ro", "mode=ro&immutable=1"):
@@ -103,7 +107,12 @@ class RunStore:
             except sqlite3.Error as error:
                 errors.append(str(error))
                 continue
-            return cls(path, connection, None)._checked()
+            store = cls(path, connection, None)
+            if store._older():
+                store.close()
+                cls.open(out).close()  # brings its format up to date
+                return cls.read(out)
+            return store._checked()
         raise StoreError(f"{path}: cannot be read: {'; '.join(errors)}")
 
     @classmethod
@@ -128,6 +137,12 @@ class RunStore:
             raise
         return self
 
+    def _older(self) -> bool:
+        """Whether the file is a run of an earlier format."""
+        (application,) = self._execute("PRAGMA application_id").fetchone()
+        (version,) = self._execute("PRAGMA user_version").fetchone()
+        return bool(application == APPLICATION_ID and version < VERSION)
+
     def _check_version(self) -> None:
         (application,) = self._execute("PRAGMA application_id").fetchone()
         (version,) = self._execute("PRAGMA user_version").fetchone()
@@ -135,8 +150,6 @@ class RunStore:
             raise StoreError(f"{self.path}: is not a run of codesign")
         if version > VERSION:
             raise StoreError(f"{self.path}: written by a newer codesign (format {version}, this one reads {VERSION})")
-        if version < VERSION and self._lock is None:
-            raise StoreError(f"{self.path}: format {version} is older than {VERSION}; `codesign resume` updates it")
         while version < VERSION:
             with guard(self.path):
                 step = f"BEGIN IMMEDIATE; {MIGRATIONS[version]} PRAGMA user_version = {version + 1}; COMMIT;"
@@ -242,10 +255,10 @@ class RunStore:
             records.append(Record(*place, evaluation, cached, worker, wall))
         return records
 
-    def asked(self) -> int:
-        """How many designs the search has asked for, finished or not."""
-        (count,) = self._execute("SELECT count(number) FROM evaluations").fetchone()
-        return int(count)
+    def asked(self) -> list[Grid]:
+        """The designs that the search has asked for, finished or not, in its order."""
+        rows = self._execute("SELECT grid FROM evaluations WHERE number IS NOT NULL ORDER BY number")
+        return [tuple(json.loads(grid)) for (grid,) in rows]
 
     def counts(self) -> dict[str, int]:
         """Number of rows by status."""

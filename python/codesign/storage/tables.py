@@ -46,7 +46,7 @@ def _flat(record: Record) -> dict[str, Any]:
     row: dict[str, Any] = {"number": record.number, "generation": record.generation, "trajectory": record.trajectory}
     row |= evaluation.design
     row |= {"status": evaluation.status, "reason": evaluation.reason}
-    groups = ("objectives", "objective_families", "constraints", "violations", "parts", "flight", "seconds")
+    groups = ("objectives", "objective_families", "constraints", "violations", "margins", "parts", "flight", "seconds")
     for group in groups:
         row |= dict(_leaves(group, getattr(evaluation, group)))
     return row | {"cached": record.cached, "worker": record.worker, "wall_seconds": record.wall_seconds}

@@ -71,6 +71,8 @@ def test_a_constraint_on_any_number_takes_one_line_of_the_study(config):
     assert verdict.reason == "largest joint torque 60 N·m above 50 N·m"
     assert verdict.violations["max_torque"] == pytest.approx(0.2)
     assert verdict.violations["mass"] == 0.0
+    assert verdict.margins["max_torque"] == pytest.approx(-0.2)
+    assert verdict.margins["mass"] == pytest.approx(0.5)  # the nearer of both bounds, 1 kg
     assert {limit.quantity.key for limit in limits(strict)} >= {"max_torque", "mass", "safety_factor"}
 
 

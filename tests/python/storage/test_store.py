@@ -91,6 +91,16 @@ def test_not_a_number_is_refused(tmp_path) -> None:
             store.finish(Record(0, 0, (1,), "", Evaluation({}, "feasible", objectives={"x": float("nan")})))
 
 
+def test_a_run_of_the_first_format_is_brought_up_to_date_when_it_is_read(tmp_path) -> None:
+    run = optimize(study(), out=tmp_path / "run", cache=None, generations=2)
+    old = sqlite3.connect(tmp_path / "run" / DATABASE)
+    old.executescript("ALTER TABLE evaluations DROP COLUMN margins; PRAGMA user_version = 1;")
+    old.close()
+    again = load_run(tmp_path / "run")
+    assert [record.evaluation.objectives for record in again.records] == [e.objectives for e in run.evaluations]
+    assert {len(record.evaluation.margins) for record in again.records} == {0}
+
+
 def test_missing_foreign_newer_and_broken_files_are_refused(tmp_path) -> None:
     with pytest.raises(StoreError, match="no run here"):
         RunStore.open(tmp_path)
