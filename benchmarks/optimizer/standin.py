@@ -53,6 +53,9 @@ class Optimizer:
 
     population: int = 25
     generations: int = 40
+    evaluations: int | None = None
+    algorithm: str = "nsga2"
+    seed: int = 1
     crossover_probability: float = 0.9
     mutation_probability: float = 0.25
 

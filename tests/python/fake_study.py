@@ -28,6 +28,7 @@ from codesign.problem.identity import Identity
 class Optimizer:
     population: int = 8
     generations: int = 5
+    evaluations: int | None = None
     crossover_probability: float = 0.9
     mutation_probability: float = 0.25
     algorithm: str = "nsga2"

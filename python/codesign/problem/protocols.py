@@ -40,6 +40,10 @@ class OptimizerDefaults(Protocol):
         """Generations, the start population included."""
 
     @property
+    def evaluations(self) -> int | None:
+        """The budget; None: the search's own, else population times generations."""
+
+    @property
     def crossover_probability(self) -> float:
         """That two parents are crossed."""
 

@@ -7,7 +7,7 @@ driver can repeat a run from its stored results, and the order in which evaluati
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from codesign.problem.evaluation import Evaluation
 
@@ -25,3 +25,11 @@ class Search(Protocol):
 
     def population(self) -> list[Grid]:
         """The survivors, in the search's order; empty for a search without memory."""
+
+
+@runtime_checkable
+class Repeatable(Search, Protocol):
+    """A search whose proposals depend on nothing but what was asked and told; resuming need not make them again."""
+
+    def repeat(self, grids: Sequence[Grid]) -> None:
+        """Grid points that it asked for before, as if it had just done so."""

@@ -19,7 +19,7 @@ from codesign.execution.pool import Executor, Outcome, Task
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import FrontTracker
 from codesign.problem.protocols import PartCache, Problem
-from codesign.search.base import Grid, Search
+from codesign.search.base import Grid, Repeatable, Search
 from codesign.search.progress import Progress
 from codesign.search.provenance import session_provenance
 from codesign.storage.records import Generation, Record
@@ -32,7 +32,8 @@ WAIT = 0.5  # s between looks at the clock while nothing finishes
 class Schedule:
     """When to ask: `first` designs at the start; once these are told, `batch` at a time, at most `window` pending.
 
-    Batches are told whole. batch = window = first: generations with a barrier (the default). batch = 1: steady state.
+    Batches are told whole. batch = window: a barrier, generations if both are `first` (the default). batch = 1: steady
+    state.
     """
 
     first: int
@@ -98,6 +99,7 @@ class SearchDriver:
         self._known = {record.grid: record for record in store.records() if record.trajectory == ""}
         self._stored = len(self._known)
         self._asked_before = store.asked()
+        self._repeatable = plan.search if isinstance(plan.search, Repeatable) else None
         self._batches: deque[_Batch] = deque()
         self._results: dict[Grid, Evaluation] = {}
         self._grids: list[Grid] = []  # by number
@@ -206,7 +208,7 @@ class SearchDriver:
             count = min(count, self._stop.evaluations - asked)
         if count <= 0 or self._ended is not None or self._must_stop(asked):
             return False
-        grids = self._search.ask(count)
+        grids = self._next(asked, count)
         if not grids:
             self._ended = "every design of the grid has been evaluated"
             return False
@@ -215,8 +217,16 @@ class SearchDriver:
         self._admit(asked, grids)
         return True
 
+    def _next(self, asked: int, count: int) -> list[Grid]:
+        """What the search asks for; of one whose asks need not be repeated, what it asked for the first time."""
+        before = self._asked_before[asked : asked + count]
+        if self._repeatable is None or asked == 0 or len(before) < count:
+            return self._search.ask(count)
+        self._repeatable.repeat(before)
+        return before
+
     def _must_stop(self, asked: int) -> bool:
-        if asked < self._asked_before:  # a resumed run asks again for all that it has
+        if asked < len(self._asked_before):  # a resumed run asks again for all that it has
             return False
         if self._stop.stalled(self._history):
             self._ended = f"hypervolume stalled over {self._stop.stall_generations} generations"

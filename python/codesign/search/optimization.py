@@ -67,8 +67,8 @@ def optimize(
         population, generations, seed, algorithm: as in the study's [optimizer] unless given; the seed decides
             everything that is random.
         evaluations: the budget itself, instead of population times generations.
-        algorithm: nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an installed package gives in its
-            entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
+        algorithm: surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an installed package gives
+            in its entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
         start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
         first: designs to evaluate at the head of the start population.
         steady: offspring without waiting for whole generations; `lag` designs unranked at most (default: population).
@@ -84,11 +84,11 @@ def optimize(
     study = load_problem(study)
     optimizer = study.optimizer
     size = optimizer.population if population is None else population
-    count = optimizer.generations if generations is None else generations
+    algorithm = _own_algorithm(study) if algorithm is None else algorithm
     settings = Settings(
-        algorithm=_own_algorithm(study) if algorithm is None else algorithm,
+        algorithm=algorithm,
         population=size,
-        evaluations=size * count if evaluations is None else evaluations,
+        evaluations=_budget(study, algorithm, size, generations) if evaluations is None else evaluations,
         crossover_probability=optimizer.crossover_probability,
         mutation_probability=optimizer.mutation_probability,
         seed=optimizer.seed if seed is None else seed,
@@ -110,6 +110,18 @@ def _own_algorithm(study: Problem) -> str:
     except ValueError as error:
         raise StudyError(f"{study.source}: optimizer.{error}") from error
     return name
+
+
+def _budget(study: Problem, algorithm: str, population: int, generations: int | None) -> int:
+    """Evaluations where no number is given: asked generations, the study's number, the search's own, the study's ones.
+
+    Raises: ValueError: there is no such search.
+    """
+    if generations is not None:
+        return population * generations
+    if study.optimizer.evaluations is not None:
+        return study.optimizer.evaluations
+    return find_search(algorithm).evaluations or population * study.optimizer.generations
 
 
 def sweep(study: StudyLike, counts: Sequence[int], *, out: str | Path, **resources: Unpack[Resources]) -> Run:

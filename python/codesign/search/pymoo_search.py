@@ -19,7 +19,7 @@ from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
 from codesign.search.base import Grid
 from codesign.search.registry import SearchKind
-from codesign.search.sampling import UnseenPoints, start_points
+from codesign.search.sampling import UnseenPoints, start_population
 
 if TYPE_CHECKING:
     from codesign.search.settings import Settings
@@ -60,7 +60,7 @@ class Evolution:
         self._size = math.prod(space.levels)
         self._filler = UnseenPoints(space.levels, np.random.default_rng([settings.seed, 1]), self._taken)
         self._started = False
-        self._start = _start_population(space, settings)
+        self._start = start_population(space, settings)
         top = np.asarray(space.levels, dtype=float) - 1.0
         problem = Problem(n_var=len(top), n_obj=len(self._objectives), n_ieq_constr=1, xl=0.0 * top, xu=top)
         common = _common(settings, options, np.array(self._start, dtype=float), self._taken)
@@ -110,13 +110,6 @@ class Evolution:
         if evaluation.status == "infeasible":
             return np.full(len(self._objectives), np.nan)
         return np.array([evaluation.objectives[name] for name in self._objectives])
-
-
-def _start_population(space: DesignSpace, settings: Settings) -> list[Grid]:
-    first = list(dict.fromkeys(settings.first))
-    drawn = start_points(space, settings.population, settings.start, settings.seed)
-    start = [*first, *(grid for grid in drawn if grid not in first)]
-    return start[: max(settings.population, len(first))]
 
 
 def _common(

@@ -23,6 +23,7 @@ BUILT_IN = {
     "agemoea": "codesign.search.pymoo_search:AGEMOEA",
     "agemoea2": "codesign.search.pymoo_search:AGEMOEA2",
     "smsemoa": "codesign.search.pymoo_search:SMSEMOA",
+    "surrogate": "codesign.search.surrogate_search:SURROGATE",
     "random": "codesign.search.sampling:RANDOM",
     "listed": "codesign.search.sampling:LISTED",
 }
@@ -39,12 +40,15 @@ class SearchKind:
 
     make: builds it for a design space and the keys of the minimized numbers. learns: what it asks for depends on what
     it was told, so it is asked for one generation at a time. options: a dataclass of its own settings, all with
-    defaults.
+    defaults. batch: of these options, how many designs are asked for at a time after the start population; None: a
+    generation. evaluations: the budget where none is given; None: that of the study's generations.
     """
 
     make: Callable[[DesignSpace, Sequence[str], Settings, Any], Search]
     learns: bool = True
     options: type = NoOptions
+    batch: Callable[[Any], int] | None = None
+    evaluations: int | None = None
 
     def checked_options(self, given: Mapping[str, Any]) -> Any:
         """The options as an object. Raises: ValueError for an unknown name."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,9 @@ from codesign.problem.design_space import DesignSpace
 from codesign.problem.evaluation import Evaluation
 from codesign.search.base import Grid
 from codesign.search.registry import SearchKind
+
+if TYPE_CHECKING:
+    from codesign.search.settings import Settings
 
 STARTS = ("sobol", "sobol-plain", "random")
 
@@ -120,6 +124,14 @@ def start_points(space: DesignSpace, count: int, start: str, seed: int) -> list[
             blocks += 1
     points = list(found)[:count]
     return points + UnseenPoints(levels, rng, set(points)).draw(count - len(points))
+
+
+def start_population(space: DesignSpace, settings: Settings) -> list[Grid]:
+    """The designs that a search begins with: the given first ones, then start points up to the population's size."""
+    first = list(dict.fromkeys(settings.first))
+    drawn = start_points(space, settings.population, settings.start, settings.seed)
+    start = [*first, *(grid for grid in drawn if grid not in first)]
+    return start[: max(settings.population, len(first))]
 
 
 def sub_grid(space: DesignSpace, counts: Sequence[int]) -> list[Grid]:

@@ -77,13 +77,14 @@ class Settings:
 
     def plan(self, space: DesignSpace, objectives: Sequence[str]) -> Plan:
         """The search with when to ask and when to end. Raises: ValueError if the settings make no sense."""
-        size = self.population
-        if not find_search(self.algorithm).learns:
+        size, kind = self.population, find_search(self.algorithm)
+        if not kind.learns:
             schedule = Schedule(size, size, max(PENDING, size))
         elif self.steady:
             schedule = Schedule(size, 1, self.lag or size)
         else:
-            schedule = Schedule(size)
+            batch = kind.batch(kind.checked_options(self.options)) if kind.batch else size
+            schedule = Schedule(size, batch, batch)
         stop = Termination(self.evaluations, self.wall_time, self.stall_generations, self.stall_tolerance)
         total = min(self.evaluations or len(self.listed), math.prod(space.levels))
         return Plan(self.search(space, objectives), schedule, stop, total)

@@ -229,11 +229,15 @@ class ValidationConfig(Section, frozen=True, kw_only=True):
 
 
 class OptimizerConfig(Section, frozen=True, kw_only=True):
-    """Defaults of the search; the command line overrides them."""
+    """Defaults of the search; the command line overrides them.
+
+    evaluations: the budget; None: 200 for the surrogate search, population times generations for the others.
+    """
 
     algorithm: Name = "nsga2"
     population: Annotated[int, Meta(ge=2, le=100_000)] = 25
     generations: Annotated[int, Meta(ge=1, le=1_000_000)] = 40
+    evaluations: Annotated[int, Meta(ge=1, le=100_000_000)] | None = None
     crossover_probability: Probability = 0.9
     mutation_probability: Probability = 0.25
     seed: Seed = 1

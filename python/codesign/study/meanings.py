@@ -194,9 +194,10 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "ValidationConfig": {"trajectories": "names of trajectories"},
     "OptimizerConfig": {
-        "algorithm": "`nsga2`, `nsga3`, `agemoea`, `agemoea2`, `smsemoa`, `random`, or one of your own",
+        "algorithm": "`surrogate`, `nsga2`, `nsga3`, `agemoea`, `agemoea2`, `smsemoa`, `random`, or one of your own",
         "population": "designs of a generation",
         "generations": "number of them, the start population included",
+        "evaluations": "the budget itself, instead of generations; without it 200 for `surrogate`",
         "crossover_probability": "that two parents are crossed",
         "mutation_probability": "of each variable of a child",
         "seed": "decides all that is random",

@@ -34,12 +34,16 @@ def optimize(
     study: StudyOption = DEFAULT_STUDY,
     population: Annotated[int | None, typer.Option(min=2, help="Designs per generation.")] = None,
     generations: Annotated[int | None, typer.Option(min=1, help="Generations, the start population included.")] = None,
+    evaluations: Annotated[
+        int | None, typer.Option(min=1, help="The budget itself, instead of generations; surrogate: 200.")
+    ] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="Decides all that is random; default: the study's.")] = None,
     workers: WorkersOption = None,
     cluster: ClusterOption = None,
     out_dir: Annotated[Path | None, typer.Option("--out", help="New folder of the run.")] = None,
     algorithm: Annotated[
-        str | None, typer.Option(help="nsga2, nsga3, agemoea, agemoea2, smsemoa or random; default: the study's.")
+        str | None,
+        typer.Option(help="surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa or random; default: the study's."),
     ] = None,
     start: Annotated[str, typer.Option(help="sobol, sobol-plain (as in the paper) or random.")] = "sobol",
     steady: Annotated[bool, typer.Option(help="Offspring without waiting for whole generations.")] = False,
@@ -68,6 +72,7 @@ def optimize(
                 out=folder,
                 population=population,
                 generations=generations,
+                evaluations=evaluations,
                 seed=seed,
                 algorithm=algorithm,
                 start=start,
