@@ -2,7 +2,7 @@
 # make test   set up what is missing, check the sources, run ctest and pytest
 # make help   everything else
 .DEFAULT_GOAL := help
-.PHONY: help setup run check test test-lowest coverage lock format stubs colcon clean
+.PHONY: help setup run check test test-lowest test-consumers coverage lock format stubs colcon clean
 
 PYTHON ?= python3
 SHELL := /bin/bash
@@ -27,6 +27,7 @@ help:
 	@echo 'make setup  only the set-up: Debian packages, $(VENV), build'
 	@echo 'make check  format, lint, types, stubs, layering (part of make test)'
 	@echo 'make test-lowest  the main jobs with the lowest versions of all packages that pyproject.toml allows'
+	@echo 'make test-consumers  exported robots in Drake, MuJoCo and Pinocchio (500 MB the first time)'
 	@echo 'make coverage  the tests, with the share of the Python lines that they reach'
 	@echo 'make lock   write the installed versions into constraints.txt, which the set-up uses'
 	@echo 'make stubs  regenerate python/codesign/_core/*.pyi'
@@ -84,6 +85,10 @@ check: $(VENV)/test.stamp
 # --- for developers ------------------------------------------------------------------------------------------------------
 test-lowest: setup
 	$(BIN)/python scripts/test_lowest.py
+
+test-consumers: $(VENV)/test.stamp
+	$(INSTALL) --requirement <($(BIN)/python scripts/dependencies.py consumers)
+	$(BIN)/python -m pytest tests/python/robot/test_drake.py tests/python/robot/test_mjcf.py tests/python/robot/test_sdf.py
 
 coverage: $(VENV)/test.stamp
 	$(PYTEST) --cov --cov-report=term:skip-covered --cov-report=html:build/coverage

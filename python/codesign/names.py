@@ -1,11 +1,18 @@
-"""Unknown names: what a message suggests instead."""
+"""Names: what a message suggests instead of an unknown one; what other programs take as one."""
 
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 
 MOST_LISTED = 20  # names in a message
+
+
+def identifier(name: str) -> str:
+    """The name with letters, digits and underscores only, as programs and USD want it."""
+    plain = re.sub(r"[^0-9A-Za-z_]", "_", name)
+    return plain if re.match(r"[A-Za-z_]", plain) else f"_{plain}"
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:

@@ -244,14 +244,14 @@ def _clearances(
     if config.interference is None or not len(history):
         return {}
     slices = config.interference.slices
-    placed = {part.name: (part.placements, _convex_pieces(parts[part.name], slices)) for part in config.parts}
+    placed = {part.name: (part.placements, part_pieces(parts[part.name], slices)) for part in config.parts}
     return flown_interference(
         robot, config.interference, placed, joint_names(config.flown), history, config.flown.step_s
     )
 
 
 @functools.lru_cache(maxsize=64)
-def _convex_pieces(part: Part, slices: int) -> tuple[Matrix, ...]:
+def part_pieces(part: Part, slices: int) -> tuple[Matrix, ...]:
     """Convex pieces of a part, part axes [m]; kept, since designs share parts."""
     surface = part.surface(CLEARANCE_SEGMENTS)
     return tuple(convex_pieces(surface.points, surface.triangles, slices))

@@ -4,33 +4,42 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import manifold3d
 import numpy as np
 
 from codesign import dynamics as dyn
-from codesign.chain.chain import build_robot
+from codesign.chain.chain import build_robot, part_pieces
 from codesign.chain.flight import find_trajectory, flight_settings
 from codesign.cli.export_formats import LOG, ROBOT
 from codesign.files import write_text
+from codesign.geometry.mesh_files import obj_text
+from codesign.names import identifier
 from codesign.parts.component import Component
+from codesign.parts.part import EXPORT_RESOLUTION, Part
 from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
+from codesign.robot.clearance import SLICES
 from codesign.robot.collisions import ignored_pairs
 from codesign.robot.description import RobotDescription
+from codesign.robot.drake_filters import urdf_collision_filters
 from codesign.robot.jets import flying_document
 from codesign.robot.mjcf import mjcf_text
-from codesign.robot.package import with_obj_meshes, write_urdf_package
+from codesign.robot.package import MeshWriter, with_obj_meshes, write_urdf_package
 from codesign.robot.sdf import sdf_text
 from codesign.robot.srdf import srdf_text
 from codesign.storage.flight_log import flown_columns, flown_metadata, write_csv, write_parquet
 from codesign.storage.flight_mcap import write_mcap
 from codesign.transforms import Matrix
+from codesign.units import MILLIMETER
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
 
+BOUNDS = " effort and velocity of joints are at most the bounds of the study's controller: robot.json "
 EVERY = 25  # samples of a flight between two postures in which collision shapes may overlap
 
 
@@ -44,46 +53,74 @@ def write_robot_files(
 ) -> None:
     """Writes what the formats ask for.
 
-    urdf: robot.urdf and meshes, which come with mjcf and sdf, too. mjcf: robot.xml. sdf: robot.sdf. With one of both
-    robot.srdf. csv, parquet, mcap: flight.*. With all but urdf robot.json: jets, start, controller.
+    urdf: robot.urdf, robot.srdf and meshes, which come with mjcf and sdf, too. mjcf: robot.xml. sdf: robot.sdf. csv,
+    parquet, mcap: flight.*. With each robot.json: jets, start, controller.
 
     components: parts in their places and the links that they are. log: of the flight that the evaluation is of.
     """
     design = study.space.design(evaluation.design)
     config = study.configured(design)
     settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
-    simulated, logged = ("mjcf" in formats or "sdf" in formats), any(kind in formats for kind in LOG)
     robot = build_robot(study, design)
     folder.mkdir(exist_ok=True)
     if any(kind in formats for kind in ROBOT):
-        robot = write_urdf(study, robot, components, folder)
-    if simulated:
+        robot = write_urdf(study, robot, components, folder, settings.limits)
         _write_models(robot, settings, log, formats, folder)
-    if logged:
+    if any(kind in formats for kind in LOG):
         words = {key: value_text(value) for key, value in design.items()}
         words = {"study": study.name, **words, "trajectory": config.flown.trajectory}
         _write_log(log, settings, robot, words, formats, folder)
-    if simulated or logged:
-        document = flying_document(robot, settings) | {
-            "study": {"name": study.name, "title": study.title},
-            "design": evaluation.design,
-            "trajectory": config.flown.trajectory,
-            "objectives": evaluation.objectives,
-        }
-        write_text(folder / "robot.json", json.dumps(document, indent=1))
+    document = flying_document(robot, settings) | {
+        "study": {"name": study.name, "title": study.title},
+        "design": evaluation.design,
+        "trajectory": config.flown.trajectory,
+        "objectives": evaluation.objectives,
+    }
+    write_text(folder / "robot.json", json.dumps(document, indent=1))
 
 
 def write_urdf(
-    study: Study, robot: RobotDescription, components: Sequence[tuple[Component, str]], folder: Path
+    study: Study,
+    robot: RobotDescription,
+    components: Sequence[tuple[Component, str]],
+    folder: Path,
+    limits: dyn.Limits | None = None,
 ) -> RobotDescription:
-    """Writes robot.urdf with the parts' meshes and returns it as written."""
+    """Writes robot.urdf with the parts' meshes and returns it as written.
+
+    Parts collide as the convex pieces with which clearances are computed, in OBJ files, which every reader takes. The
+    robot's name becomes an identifier, as USD wants it.
+
+    limits: of the flight; effort and velocity of the joints are bounded by them.
+    """
     placements = {place.link: place for part in study.config.parts for place in part.placements}
-    writers = {}
+    slices = SLICES if study.config.interference is None else study.config.interference.slices
+    writers: dict[str, MeshWriter] = {}
     for component, link in components:
-        filename = f"{component.part.name}.stl"
-        writers[filename] = component.part.write_stl
-        robot = robot.set_mesh(link, filename, placements[link].link_T_part.matrix(), 1e-3)
-    return RobotDescription.load(write_urdf_package(robot, folder, writers))
+        part = component.part
+        filename = f"{part.name}.obj"
+        writers[filename] = partial(_write_part, part)
+        pieces = {
+            f"{part.name}_collision_{number}.obj": points
+            for number, points in enumerate(part_pieces(part, slices), start=1)
+        }
+        writers |= {name: partial(_write_piece, points) for name, points in pieces.items()}
+        pose = placements[link].link_T_part.matrix()
+        robot = robot.set_mesh(link, filename, pose, MILLIMETER, collisions=list(pieces))
+    if limits is not None:
+        robot = robot.with_joint_bounds(limits.torque, limits.joint_speed)
+    return RobotDescription.load(write_urdf_package(robot.renamed(identifier(robot.name)), folder, writers))
+
+
+def _write_part(part: Part, path: Path) -> None:
+    solid = part.solid(EXPORT_RESOLUTION)
+    write_text(path, obj_text(solid.points, solid.triangles))
+
+
+def _write_piece(points: Matrix, path: Path) -> None:
+    """The convex hull of points [m], in mm."""
+    mesh = manifold3d.Manifold.hull_points(points / MILLIMETER).to_mesh()
+    write_text(path, obj_text(mesh.vert_properties, mesh.tri_verts))
 
 
 def flown_postures(settings: dyn.FlightSettings, log: dyn.FlightLog) -> dict[str, Matrix]:
@@ -97,8 +134,10 @@ def flown_postures(settings: dyn.FlightSettings, log: dyn.FlightLog) -> dict[str
 def _write_models(
     robot: RobotDescription, settings: dyn.FlightSettings, log: dyn.FlightLog, formats: Collection[str], folder: Path
 ) -> None:
-    robot = with_obj_meshes(robot)
-    ignored = ignored_pairs(robot, flown_postures(settings, log))
+    readable = with_obj_meshes(robot)
+    ignored = ignored_pairs(readable, flown_postures(settings, log))
+    robot.with_elements(urdf_collision_filters(ignored), BOUNDS).write(folder / "robot.urdf")
+    robot = readable
     write_text(folder / "robot.srdf", srdf_text(robot, settings, ignored))
     if "mjcf" in formats:
         write_text(folder / "robot.xml", mjcf_text(robot, settings, ignored))

@@ -11,6 +11,7 @@ from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codesign import __version__
 from codesign.files import write_bytes
@@ -32,6 +33,13 @@ def write_stl(solid: Solid, path: str | os.PathLike[str], title: str = "") -> No
     records["corners"] = corners
     header = f"codesign {title} [mm]".encode("ascii", "replace")[:80].ljust(80)
     write_bytes(Path(path), header + np.uint32(len(records)).tobytes() + records.tobytes())
+
+
+def obj_text(points: Vector, triangles: NDArray[Any]) -> str:
+    """Wavefront OBJ of points (n, 3) and triangles (m, 3), in the points' unit; coordinates read back exactly."""
+    vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in np.asarray(points, dtype=float).tolist()]
+    faces = [f"f {a} {b} {c}" for a, b, c in (np.asarray(triangles, dtype=np.int64) + 1).tolist()]
+    return "\n".join([*vertices, *faces, ""])
 
 
 def write_3mf(

@@ -44,6 +44,9 @@ class PlumeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     length_mm: Annotated[float, msgspec.Meta(gt=0)] = 1000.0
 
 
+SLICES = 8  # convex pieces of a part
+
+
 class InterferenceSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What is measured.
 
@@ -57,7 +60,7 @@ class InterferenceSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=Tr
     plumes: PlumeSettings = PlumeSettings()
     report_below_mm: Annotated[float, msgspec.Meta(gt=0)] = 50.0
     postures: Annotated[int, msgspec.Meta(ge=1, le=100_000)] = 50
-    slices: Annotated[int, msgspec.Meta(ge=1, le=1000)] = 8
+    slices: Annotated[int, msgspec.Meta(ge=1, le=1000)] = SLICES
 
 
 @dataclass(frozen=True, slots=True)

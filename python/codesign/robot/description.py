@@ -189,23 +189,31 @@ class RobotDescription:
         return self._with(element)
 
     def set_mesh(
-        self, link: str, filename: str, link_T_mesh: ArrayLike, scale: float = 1.0, material: str | None = None
+        self,
+        link: str,
+        filename: str,
+        link_T_mesh: ArrayLike,
+        scale: float = 1.0,
+        material: str | None = None,
+        collisions: Sequence[str] = (),
     ) -> RobotDescription:
-        """The robot with one mesh as the only visual and collision shape of a link.
+        """The robot with one mesh as the only visual of a link, and its collision shapes.
 
         filename: as it is to stand in the URDF (relative path or package://…). scale: file units to meters.
         link_T_mesh: (4, 4). material: name of a material of the robot; None keeps the link's first one.
+        collisions: meshes of the same frame and scale to collide with; the visual's mesh if there are none.
         """
         T = require_pose(link_T_mesh, f"mesh of link {link}")
         element = self._copied("link", link)
         old_material = element.find("visual/material")
         for shape in (*element.findall("visual"), *element.findall("collision")):
             element.remove(shape)
-        for tag in ("visual", "collision"):
+        colliding = [("collision", name) for name in collisions or (filename,)]
+        for tag, name in (("visual", filename), *colliding):
             shape = ET.SubElement(element, tag)
             shape.append(_origin_element(T))
             geometry = ET.SubElement(shape, "geometry")
-            ET.SubElement(geometry, "mesh", filename=filename, scale=number_text([scale] * 3))
+            ET.SubElement(geometry, "mesh", filename=name, scale=number_text([scale] * 3))
             if tag == "visual" and material is not None:
                 ET.SubElement(shape, "material", name=material)
             elif tag == "visual" and old_material is not None:
@@ -217,6 +225,33 @@ class RobotDescription:
         xml = copy.deepcopy(self._xml)
         for mesh in xml.iter("mesh"):
             mesh.set("filename", renamed.get(str(mesh.get("filename")), str(mesh.get("filename"))))
+        return RobotDescription(self.root_link, self.directory, xml)
+
+    def with_joint_bounds(self, effort: float, velocity: float) -> RobotDescription:
+        """The robot with no moving joint above these bounds [N m or N, rad/s or m/s]; lower ones stay."""
+        xml = copy.deepcopy(self._xml)
+        for joint in xml.findall("joint"):
+            if joint.get("type") not in MOVING:
+                continue
+            limit = joint.find("limit")
+            if limit is None:
+                limit = ET.SubElement(joint, "limit")
+            for key, bound in (("effort", effort), ("velocity", velocity)):
+                limit.set(key, number_text(min(bound, float(limit.get(key, bound)))))
+        return RobotDescription(self.root_link, self.directory, xml)
+
+    def renamed(self, name: str) -> RobotDescription:
+        """The same robot by another name."""
+        xml = copy.copy(self._xml)
+        xml.set("name", name)
+        return RobotDescription(self.root_link, self.directory, xml)
+
+    def with_elements(self, elements: Sequence[ET.Element], comment: str = "") -> RobotDescription:
+        """The robot with a comment and elements that only other tools read, of another XML namespace, at its end."""
+        xml = copy.copy(self._xml)
+        if comment:
+            xml.append(ET.Comment(comment))
+        xml.extend(elements)
         return RobotDescription(self.root_link, self.directory, xml)
 
     # ---- writing

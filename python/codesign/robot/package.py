@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
@@ -11,7 +12,9 @@ from xml.sax.saxutils import quoteattr
 
 from codesign.errors import UrdfError
 from codesign.files import temporary_folder, write_text
+from codesign.geometry.mesh_files import obj_text
 from codesign.robot.description import RobotDescription
+from codesign.robot.mesh_companions import companions
 
 if TYPE_CHECKING:
     import trimesh
@@ -67,23 +70,16 @@ def with_obj_meshes(robot: RobotDescription) -> RobotDescription:
 
     Raises: UrdfError if a mesh is not found beside the robot or cannot be read.
     """
-    renamed: dict[str, str] = {}
+    renamed = {name: name for _, name in robot.mesh_filenames() if name.lower().endswith(".obj")}
     for link, filename in robot.mesh_filenames():
-        if filename in renamed or filename.lower().endswith(".obj"):
+        if filename in renamed:
             continue
         mesh = load_mesh(robot, link, filename)
         path = resolve_mesh(filename, robot.directory)
         target = path.with_name(_unique_name(f"{path.stem}.obj", renamed))
-        write_text(target, _obj_text(mesh))
+        write_text(target, obj_text(mesh.vertices, mesh.faces))
         renamed[filename] = "".join(filename.rpartition("/")[:2]) + target.name
     return robot.with_mesh_filenames(renamed)
-
-
-def _obj_text(mesh: trimesh.Trimesh) -> str:
-    """Wavefront OBJ; coordinates read back exactly."""
-    vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.vertices.tolist()]
-    faces = [f"f {a} {b} {c}" for a, b, c in (mesh.faces + 1).tolist()]
-    return "\n".join([*vertices, *faces, ""])
 
 
 def _candidates(filename: str, directory: Path | None, packages: Sequence[Path]) -> list[tuple[Path, Path]]:
@@ -116,7 +112,7 @@ def write_urdf_package(
         robot: what to write; every mesh it names ends up in `meshes/`.
         out_dir: made if absent; existing files of the same names are replaced, others are left alone.
         meshes: mesh filename as the robot names it -> function that writes that file (`part.write_stl`). Meshes not
-            given are copied from where `resolve_mesh` finds them.
+            given are copied from where `resolve_mesh` finds them, with the materials, textures and buffers they name.
         package: name of the ROS package: meshes are then referenced as package://name/meshes/…, and a package.xml is
             written, so that the folder must be named the same to be found; by default they are relative to the URDF.
         packages: where package:// references of the robot are looked for.
@@ -134,9 +130,10 @@ def write_urdf_package(
         renamed: dict[str, str] = {}
         for link, filename in robot.mesh_filenames():
             if filename not in renamed:
-                target = staged / "meshes" / _unique_name(filename, renamed)
-                _stage_mesh(robot, link, filename, target, meshes or {}, packages)
-                renamed[filename] = prefix + target.name
+                name = _unique_name(filename, renamed)
+                renamed[filename] = prefix + _stage_mesh(
+                    robot, link, filename, staged / "meshes" / name, meshes or {}, packages
+                )
         robot.with_mesh_filenames(renamed).write(staged / "robot.urdf")
         if package is not None:
             (staged / "package.xml").write_text(_package_xml(package, robot.name), encoding="utf-8")
@@ -151,19 +148,36 @@ def _stage_mesh(
     target: Path,
     meshes: Mapping[str, MeshWriter],
     packages: Sequence[Path],
-) -> None:
+) -> str:
+    """Writes or copies a mesh; returns its path in the folder of the target.
+
+    A mesh that needs other files (materials, textures, buffers) gets a folder of its own, named as the target, in which
+    they lie as they did, so that no reference in them changes.
+    """
     if filename in meshes:
         meshes[filename](target)
-        return
+        return target.name
     try:
-        shutil.copyfile(resolve_mesh(filename, robot.directory, packages), target)
+        source = resolve_mesh(filename, robot.directory, packages)
+        allowed = [*([] if robot.directory is None else [robot.directory]), *packages]
+        others = companions(source, [*allowed, source.parent])
     except UrdfError as error:
         raise UrdfError(f"link {link}: {error}") from error
+    if not others:
+        shutil.copyfile(source, target)
+        return target.name
+    common = Path(os.path.commonpath([path.parent for path in (source, *others)]))
+    for path in (source, *others):
+        copy = target / path.relative_to(common)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(path, copy)
+    return f"{target.name}/{source.relative_to(common).as_posix()}"
 
 
 def _unique_name(filename: str, renamed: Mapping[str, str]) -> str:
     name = PurePosixPath(filename.partition("://")[2] or filename)
-    taken = {PurePosixPath(path).name for path in renamed.values()}
+    below = (path.rpartition("meshes/")[2] if "meshes/" in path else path for path in renamed.values())
+    taken = {name for path in below for name in (PurePosixPath(path).parts[0], PurePosixPath(path).name)}
     unique, number = name.name, 1
     while unique in taken or not unique:
         number += 1
@@ -176,7 +190,9 @@ def _move_into(staged: Path, out_dir: Path) -> None:
     (out_dir / "meshes").mkdir(parents=True, exist_ok=True)
     files = sorted((path for path in staged.rglob("*") if path.is_file()), key=lambda path: path.name == "robot.urdf")
     for path in files:
-        path.replace(out_dir / path.relative_to(staged))
+        target = out_dir / path.relative_to(staged)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        path.replace(target)
 
 
 def _package_xml(package: str, robot: str) -> str:

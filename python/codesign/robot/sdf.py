@@ -16,10 +16,10 @@ from codesign.errors import UrdfError
 from codesign.robot.bodies import depth_first, has_mass, rigid_bodies
 from codesign.robot.collisions import Pairs
 from codesign.robot.description import MOVING, RobotDescription, number_text
+from codesign.robot.drake_filters import collision_filters
 from codesign.transforms import Matrix, inverse, rpy_from_rotation
 
 VERSION = "1.9"  # the highest one that libsdformat 12 knows
-DRAKE = "drake.mit.edu"
 OURS = "codesign"
 LIMITS = ("lower", "upper", "effort", "velocity")
 
@@ -33,7 +33,6 @@ def sdf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pai
     robot: its meshes with paths relative to where the text will stand (Drake reads OBJ alone).
     Raises: UrdfError for joints that SDF 1.9 cannot say, a moving body without mass, a jet whose frame the robot lacks.
     """
-    ET.register_namespace("drake", DRAKE)
     ET.register_namespace(OURS, OURS)
     root = ET.Element("sdf", version=VERSION)
     model = ET.SubElement(root, "model", name=robot.name)
@@ -43,7 +42,7 @@ def sdf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pai
         writer.append_joint(name)
     for jet in settings.actuators:
         _append_jet(model, robot, jet)
-    _append_filters(model, ignored, writer.hosts)
+    model.extend(collision_filters(ignored, writer.hosts))
     ET.indent(root)
     return '<?xml version="1.0"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
@@ -180,20 +179,6 @@ def _append_jet(model: ET.Element, robot: RobotDescription, jet: dyn.Actuator) -
     element = ET.SubElement(model, f"{{{OURS}}}jet", frame=f"{jet.frame}_jet")  # a name would clash with the link
     for key, value in numbers.items():
         ET.SubElement(element, f"{{{OURS}}}{key}").text = number_text(value)
-
-
-def _append_filters(model: ET.Element, ignored: Pairs, hosts: dict[str, str]) -> None:
-    """Collision filters for Drake: each link with ignored pairs is a group of its own."""
-    partners: dict[str, list[str]] = {}
-    for first, second in ignored:
-        a, b = hosts[first], hosts[second]
-        if a != b and b not in partners.setdefault(a, []):
-            partners[a].append(b)
-    for link in dict.fromkeys([*partners, *(other for others in partners.values() for other in others)]):
-        group = ET.SubElement(model, f"{{{DRAKE}}}collision_filter_group", name=f"only_{link}")
-        ET.SubElement(group, f"{{{DRAKE}}}member").text = link
-        for other in partners.get(link, []):
-            ET.SubElement(group, f"{{{DRAKE}}}ignored_collision_filter_group").text = f"only_{other}"
 
 
 def _pose(a_T_b: Matrix, relative_to: str | None = None) -> ET.Element:

@@ -255,3 +255,54 @@ def rotational_inertia(robot, poses):
             r = body.com - com
             total += body.inertia + body.mass * (r @ r * np.eye(3) - np.outer(r, r))
     return total
+
+
+def textured(folder, color):
+    """An OBJ file with a material whose texture lies in another folder."""
+    (folder / "meshes").mkdir(parents=True)
+    (folder / "textures").mkdir()
+    (folder / "meshes/body.obj").write_text("mtllib body.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl skin\nf 1 2 3\n")
+    (folder / "meshes/body.mtl").write_text(f"newmtl skin\nKd {color} 0 0\nmap_Kd -s 1 1 1 ../textures/skin.png\n")
+    (folder / "textures/skin.png").write_bytes(b"png")
+
+
+def test_materials_textures_and_buffers_come_with_a_mesh(robot, tmp_path):
+    for folder, color in (("a", "1"), ("b", "0.5")):
+        textured(tmp_path / folder, color)
+    (tmp_path / "c.gltf").write_text('{"buffers": [{"uri": "my%20data.bin"}, {"uri": "data:,x"}]}')
+    (tmp_path / "my data.bin").write_bytes(b"buffer")
+    (tmp_path / "d.dae").write_text("<COLLADA><init_from>a/textures/skin.png</init_from></COLLADA>")
+    names = dict(
+        zip(
+            ("l_forearm", "r_forearm", "chest_l_bracket", "head"),
+            ("a/meshes/body.obj", "b/meshes/body.obj", "c.gltf", "d.dae"),
+            strict=True,
+        )
+    )
+    for link, name in names.items():
+        robot = robot.set_mesh(link, name, np.eye(4))
+    for link in set(robot.link_names) - set(names):
+        if any(name == link for name, _ in robot.mesh_filenames()):
+            robot = robot.set_mesh(link, "d.dae", np.eye(4))
+    source = RobotDescription.load(robot.write(tmp_path / "robot.urdf"))
+    again = RobotDescription.load(write_urdf_package(source, tmp_path / "out"))
+    copies = {link: resolve_mesh(filename, again.directory) for link, filename in again.mesh_filenames()}
+    for link, color in (("l_forearm", "Kd 1 "), ("r_forearm", "Kd 0.5 ")):
+        assert color in copies[link].with_name("body.mtl").read_text()
+        assert (copies[link].parent / "../textures/skin.png").read_bytes() == b"png"
+    assert copies["chest_l_bracket"].with_name("my data.bin").read_bytes() == b"buffer"
+    assert (copies["head"].parent / "a/textures/skin.png").is_file()
+    third = RobotDescription.load(write_urdf_package(again, tmp_path / "again"))
+    assert sorted(p.name for p in (tmp_path / "again").rglob("*.mtl")) == ["body.mtl"] * 2
+    assert third.name == robot.name
+
+
+def test_files_of_a_mesh_outside_the_folders_are_refused(robot, tmp_path):
+    textured(tmp_path / "a", "1")
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "robots/x.obj").write_text("mtllib ../a/meshes/body.mtl\nv 0 0 0\n")
+    for link in {link for link, _ in robot.mesh_filenames()}:
+        robot = robot.set_mesh(link, "x.obj", np.eye(4))
+    source = RobotDescription.load(robot.write(tmp_path / "robots/robot.urdf"))
+    with pytest.raises(UrdfError, match=r"x\.obj: '\.\./a/meshes/body\.mtl' leaves the folders"):
+        write_urdf_package(source, tmp_path / "out")
