@@ -40,6 +40,10 @@ void bind_evaluate(py::module_& m) {
       .def_readonly("name", &fem::LoadCase::name)
       .def_readonly("loads", &fem::LoadCase::loads)
       .def_readonly("least_safety_factor", &fem::LoadCase::least_safety_factor);
+  py::class_<fem::VaryingCase>(m, "VaryingCase", "Unit loads whose factors vary over time.")
+      .def(py::init<std::string, std::vector<std::vector<fem::Load>>>(), "name"_a, "units"_a)
+      .def_readonly("name", &fem::VaryingCase::name)
+      .def_readonly("units", &fem::VaryingCase::units);
   py::class_<fem::PartCase>(m, "PartCase",
                             "One part and its load cases; supports and loads name surface faces.")
       .def(py::init(&make_case), py::kw_only(), "surface"_a, "size"_a, "material"_a, "supports"_a,
@@ -55,6 +59,7 @@ void bind_evaluate(py::module_& m) {
       .def_readonly("settings", &fem::PartCase::settings)
       .def_readwrite("tolerance", &fem::PartCase::tolerance, "relative, of the peak stress")
       .def_readwrite("max_refinements", &fem::PartCase::max_refinements, "0: one pass")
+      .def_readwrite("varying", &fem::PartCase::varying, "VaryingCase")
       .def_readwrite("modes", &fem::PartCase::modes, "natural frequencies wanted")
       .def_readwrite("buckling", &fem::PartCase::buckling, "buckling factors wanted");
   py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")
@@ -64,6 +69,8 @@ void bind_evaluate(py::module_& m) {
       .def_readonly("governing", &fem::PartAnalysis::governing,
                     "the case of the smallest safety factor over what it asks for")
       .def_property_readonly("result", &fem::PartAnalysis::result, "of the governing case")
+      .def_readonly("responses", &fem::PartAnalysis::responses,
+                    "UnitResponses of each varying case")
       .def_readonly("frequencies", &fem::PartAnalysis::frequencies,
                     "(modes,) Hz, ascending, of the whole part")
       .def_readonly("buckling_factors", &fem::PartAnalysis::buckling_factors,

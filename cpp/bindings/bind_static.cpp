@@ -4,6 +4,7 @@
 #include "bindings/bindings.hpp"
 #include "fem/boundary/smooth_patch.hpp"
 #include "fem/elasticity/static_solver.hpp"
+#include "fem/elasticity/unit_responses.hpp"
 
 namespace py = pybind11;
 using py::literals::operator""_a;
@@ -89,7 +90,10 @@ void bind_supports_and_loads(py::module_& m) {
            "where"_a, "force"_a, "point"_a, "moment"_a, "region"_a = std::nullopt)
       .def_readonly("where", &AffineTraction::where)
       .def_readonly("region", &AffineTraction::region);
-  py::class_<Acceleration>(m, "Acceleration").def(py::init<Eigen::Vector3d>(), "acceleration"_a);
+  py::class_<Acceleration>(m, "Acceleration")
+      .def(py::init<Eigen::Vector3d, Eigen::Matrix3d, Eigen::Vector3d>(), "acceleration"_a,
+           "gradient"_a = Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
+           "point"_a = Eigen::Vector3d(Eigen::Vector3d::Zero()));
   py::class_<BodyForce>(m, "BodyForce").def(py::init<Points>(), "force"_a);
   m.def("load_vector", &load_vector, "mesh"_a, "material"_a, "loads"_a,
         py::call_guard<py::gil_scoped_release>());
@@ -161,10 +165,29 @@ void bind_result(py::module_& m) {
       .def_readonly("reversed", &BucklingModes::reversed,
                     "lowest factor of the load reversed; inf: none")
       .def_readonly("limit", &BucklingModes::limit, "factor up to which was sought");
+  py::class_<HistoryPeak>(m, "HistoryPeak", "Largest von Mises stress over a history of loads.")
+      .def_property_readonly(
+          "stress", [](const HistoryPeak& found) { return found.peak.value; }, "Pa")
+      .def_property_readonly(
+          "position", [](const HistoryPeak& found) { return found.peak.position; }, "(3) m")
+      .def_readonly("instant", &HistoryPeak::instant, "row of the history")
+      .def_readonly("pairs", &HistoryPeak::pairs, "of a face or element and a block of instants")
+      .def_readonly("visited", &HistoryPeak::visited, "pairs that no bound ruled out");
+  py::class_<UnitResponses>(m, "UnitResponses", "Answers of a part to unit loads.")
+      .def_property_readonly("units", &UnitResponses::units, "how many unit loads")
+      .def_property_readonly("mesh", &UnitResponses::mesh)
+      .def("peak", &UnitResponses::peak, "history"_a, py::call_guard<py::gil_scoped_release>(),
+           "Largest von Mises stress over a history (instants, units) of the units' factors.")
+      .def("at", &UnitResponses::at, "factors"_a, py::call_guard<py::gil_scoped_release>(),
+           "StaticResult of one instant, factors (units,).")
+      .def("stress_at", &UnitResponses::stress_at, "node"_a, "history"_a,
+           "(instants, 6) recovered stress at a node, Pa: xx yy zz xy yz zx");
   py::class_<StaticSystem>(m, "StaticSystem", "A model factorised once for many load cases.")
       .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings>(), "mesh"_a,
            "material"_a, "supports"_a, "settings"_a, py::call_guard<py::gil_scoped_release>())
       .def("solve", &StaticSystem::solve, "loads"_a, py::call_guard<py::gil_scoped_release>())
+      .def("unit_responses", &StaticSystem::unit_responses, "units"_a,
+           py::call_guard<py::gil_scoped_release>())
       .def("displacement", &StaticSystem::displacement, "loads"_a,
            py::call_guard<py::gil_scoped_release>(), "(n, 3) m, of one load case")
       .def("natural_modes", &StaticSystem::natural_modes, "count"_a,

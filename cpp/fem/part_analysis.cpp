@@ -133,6 +133,9 @@ void solve(const PartCase& part, PartAnalysis& analysis) {
   {
     const StaticSystem system(analysis.mesh, part.material, part.supports, part.settings);
     solve_cases(part, system, analysis);
+    for (const VaryingCase& varying : part.varying) {
+      analysis.responses.push_back(system.unit_responses(varying.units));
+    }
     if (part.modes > 0) analysis.frequencies = system.natural_modes(part.modes).frequency;
     if (part.buckling > 0) factors = buckling_factors(part, system, analysis);
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fem/elasticity/static_solver.hpp"
+#include "fem/elasticity/unit_responses.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 #include "fem/meshing/size_field.hpp"
 #include "fem/meshing/tet_mesher.hpp"
@@ -19,6 +20,13 @@ struct LoadCase {
   double least_safety_factor = 1.0;
 };
 
+// A load case that varies: unit loads, whose factors over time are not known yet (a flight gives
+// them, say).
+struct VaryingCase {
+  std::string name;
+  std::vector<std::vector<Load>> units;
+};
+
 // One part and its load cases, ready to be meshed and solved; supports and loads name faces of the
 // surface.
 struct PartCase {
@@ -28,6 +36,7 @@ struct PartCase {
   Material material;
   std::vector<Support> supports;
   std::vector<LoadCase> cases;
+  std::vector<VaryingCase> varying;
   StaticSettings settings;
   double tolerance = 0.05;  // wanted relative error of the peak stress, and so of the safety factor
   int max_refinements = 0;  // local refinements around the peak allowed to reach it; 0: one pass
@@ -43,7 +52,8 @@ struct PartAnalysis {
   std::size_t governing = 0;  // the case of the smallest safety factor over what it asks for
 
   const StaticResult& result() const { return results[governing]; }
-  Eigen::VectorXd frequencies;  // (modes) Hz, ascending, of the whole part
+  std::vector<UnitResponses> responses;  // to the unit loads of each varying case
+  Eigen::VectorXd frequencies;           // (modes) Hz, ascending, of the whole part
   // (buckling) of the load, ascending, of the whole part and the case that buckles first; infinity
   // where there is none
   Eigen::VectorXd buckling_factors;

@@ -83,9 +83,18 @@ struct LoadAdder {
   void operator()(const AffineTraction& load) const;
 
   void operator()(const Acceleration& load) const {
-    require_finite(load.acceleration.allFinite(), "acceleration");
-    const Eigen::RowVector3d density = material.density * load.acceleration.transpose();
-    (*this)(BodyForce{density});
+    require_finite(
+        load.acceleration.allFinite() && load.gradient.allFinite() && load.point.allFinite(),
+        "acceleration, its gradient and point");
+    const Eigen::RowVector3d uniform = material.density * load.acceleration.transpose();
+    if (load.gradient.isZero(0.0)) {
+      (*this)(BodyForce{uniform});
+      return;
+    }
+    Points force = (mesh.nodes.rowwise() - load.point.transpose()) *
+                   (material.density * load.gradient.transpose());
+    force.rowwise() += uniform;
+    (*this)(BodyForce{std::move(force)});
   }
 
   void operator()(const BodyForce& load) const {

@@ -48,9 +48,13 @@ struct AffineTraction {
   std::optional<Disc> region;
 };
 
-// Gravity-like field (m/s²): a body force density times acceleration in every element.
+// Gravity-like field (m/s²), affine in the place x: acceleration + gradient (x - point). A body
+// force density times that acts in every element. The inertia of a part that turns with the angular
+// velocity w and acceleration e has the gradient -([e]x + [w]x [w]x).
 struct Acceleration {
   Eigen::Vector3d acceleration;
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();  // 1/s²
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
 };
 
 // Force per volume (N/m³): one row, or one row a node, interpolated by the shape functions.

@@ -81,6 +81,8 @@ struct StaticResult {
   bool peak_resolved() const { return stress_error <= 0.5 * peak_stress; }
 };
 
+class UnitResponses;
+
 // A model ordered, assembled and factorised once, for any number of load cases.
 class StaticSystem {
  public:
@@ -95,6 +97,10 @@ class StaticSystem {
   // Throws SolverError if the residual misses the tolerance, ModelError if nothing acts on the part
   // or a load acts on held components only.
   StaticResult solve(const std::vector<Load>& loads) const;
+
+  // The answers to unit loads (any number of loads each), see unit_responses.hpp; a load of nothing
+  // is no error here. Throws SolverError as solve does, ModelError if a support is moved.
+  UnitResponses unit_responses(const std::vector<std::vector<Load>>& units) const;
 
   // The lowest modes on the supports, from the same factor if there is one. Throws SolverError,
   // std::invalid_argument: no density, count < 1.

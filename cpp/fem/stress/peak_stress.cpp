@@ -14,8 +14,6 @@ namespace {
 
 constexpr int kLattice = 10;  // (kLattice + 1)(kLattice + 2) / 2 = 66 points
 
-using FaceStress = Eigen::Matrix<double, 6, 6>;  // column: a node of the face
-
 FaceStress face_stress(const TetMesh& mesh, const Stresses& nodal, int triangle) {
   FaceStress s;
   for (int k = 0; k < 6; ++k) s.col(k) = nodal.row(mesh.boundary(triangle, k)).transpose();
@@ -63,26 +61,11 @@ std::vector<std::pair<double, int>> by_bound(const TetMesh& mesh, const Stresses
 // The largest sample over the faces outside the zone (left_out = false) or inside it.
 PeakStress largest_sample(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone,
                           bool left_out) {
-  static const std::vector<Sample> samples = lattice();
   PeakStress peak;
   for (const auto& [bound, t] : by_bound(mesh, nodal)) {
     check_interrupt();
     if (peak.triangle >= 0 && bound <= peak.value) break;
-    const FaceStress stress = face_stress(mesh, nodal, t);
-    const FaceNodes x = face_nodes(mesh, t);
-    const Eigen::Vector3d center = x.leftCols<3>().rowwise().mean();
-    const double radius = (x.colwise() - center).colwise().norm().maxCoeff();
-    // A face that lies on one side as a whole needs no look at its points.
-    const bool all_in = zone.skips(t) || zone.contains_ball(center, radius);
-    const bool none_in = !all_in && !zone.touches_ball(center, radius);
-    if (left_out ? none_in : all_in) continue;
-    for (const Sample& sample : samples) {
-      const double value = von_mises(Voigt(stress * sample.values));
-      if (peak.triangle >= 0 && value <= peak.value) continue;
-      const Eigen::Vector3d position = x * sample.values;
-      const bool inside = all_in || (!none_in && zone.contains(position));
-      if (inside == left_out) peak = {value, position, t, -1, sample.reference};
-    }
+    raise_on_face(mesh, face_stress(mesh, nodal, t), t, zone, left_out, peak);
   }
   return peak;
 }
@@ -108,14 +91,46 @@ double largest_error_around(const TetMesh& mesh, const RecoveryError& recovery,
 
 }  // namespace
 
+void raise_on_face(const TetMesh& mesh, const FaceStress& stress, int triangle,
+                   const ExclusionZone& zone, bool left_out, PeakStress& peak) {
+  static const std::vector<Sample> samples = lattice();
+  const FaceNodes x = face_nodes(mesh, triangle);
+  const Eigen::Vector3d center = x.leftCols<3>().rowwise().mean();
+  const double radius = (x.colwise() - center).colwise().norm().maxCoeff();
+  // A face that lies on one side as a whole needs no look at its points.
+  const bool all_in = zone.skips(triangle) || zone.contains_ball(center, radius);
+  const bool none_in = !all_in && !zone.touches_ball(center, radius);
+  if (left_out ? none_in : all_in) return;
+  for (const Sample& sample : samples) {
+    const double value = von_mises(Voigt(stress * sample.values));
+    if (peak.read() && value <= peak.value) continue;
+    const Eigen::Vector3d position = x * sample.values;
+    const bool inside = all_in || (!none_in && zone.contains(position));
+    if (inside == left_out) peak = {value, position, triangle, -1, sample.reference};
+  }
+}
+
+void raise_in_element(const TetMesh& mesh, const ElementStress& stress, int element,
+                      const ExclusionZone& zone, PeakStress& peak) {
+  for (const Eigen::Vector3d& point : tet_rule_4().points) {
+    const TetValues values = tet10_values(point);
+    const double value = von_mises(Voigt(stress * values));
+    if (peak.read() && value <= peak.value) continue;
+    const Eigen::Vector3d position = tet_nodes(mesh, element) * values;
+    if (!zone.contains(position)) peak = {value, position, -1, element, Eigen::Vector2d::Zero()};
+  }
+}
+
+void throw_no_place_left() {
+  throw ModelError(
+      "the whole surface lies within the exclusion distance of supports and load borders: no "
+      "place is left to read the peak stress; choose a smaller exclusion_distance or hold less "
+      "of the surface");
+}
+
 PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone) {
   const PeakStress peak = largest_sample(mesh, nodal, zone, false);
-  if (peak.triangle < 0) {
-    throw ModelError(
-        "the whole surface lies within the exclusion distance of supports and load borders: no "
-        "place is left to read the peak stress; choose a smaller exclusion_distance or hold less "
-        "of the surface");
-  }
+  if (peak.triangle < 0) throw_no_place_left();
   return peak;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fem/mesh/tet10.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 #include "fem/stress/exclusion.hpp"
 #include "fem/stress/recovery.hpp"
@@ -16,7 +17,23 @@ struct PeakStress {
   int triangle = -1;  // row of TetMesh::boundary; -1: inside the part
   int element = -1;   // if inside
   Eigen::Vector2d reference = Eigen::Vector2d::Zero();  // where in the triangle
+
+  bool read() const { return triangle >= 0 || element >= 0; }  // false: no place yet
 };
+
+// Columns: the stress at the nodes of a boundary face, of an element.
+using FaceStress = Eigen::Matrix<double, 6, 6>;
+using ElementStress = Eigen::Matrix<double, 6, kTetNodes>;
+
+// Raises a peak to the largest sample of one face outside the zone (left_out: inside it), and of
+// the four points of an element outside it, where these are above.
+void raise_on_face(const TetMesh& mesh, const FaceStress& stress, int triangle,
+                   const ExclusionZone& zone, bool left_out, PeakStress& peak);
+void raise_in_element(const TetMesh& mesh, const ElementStress& stress, int element,
+                      const ExclusionZone& zone, PeakStress& peak);
+
+// A zone that holds everything. Throws ModelError.
+[[noreturn]] void throw_no_place_left();
 
 // Largest von Mises stress of the nodal stress interpolated over the boundary faces, sampled at 66
 // points a face, outside the zone. Throws ModelError if the zone leaves no point.

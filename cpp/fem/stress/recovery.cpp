@@ -28,7 +28,12 @@ constexpr double kLeastPivot = 1e-4;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using Basis = Eigen::Matrix<double, 10, 1>;
-using Coefficients = Eigen::Matrix<double, 10, 6>;
+
+// Columns: the stress components of one field, or of any number of fields side by side.
+template <int Columns>
+using Coefficients = Eigen::Matrix<double, 10, Columns>;
+template <int Columns>
+using Fields = Eigen::Matrix<double, Eigen::Dynamic, Columns, Eigen::RowMajor>;
 
 Basis quadratic_basis(const Eigen::Vector3d& r) {
   Basis p;
@@ -122,22 +127,24 @@ class PatchFinder {
 };
 
 // A quadratic stress around a corner node.
+template <int Columns>
 struct PatchField {
   Eigen::Vector3d origin;
   double radius;
-  Coefficients coefficients;
+  Coefficients<Columns> coefficients;
   double least_pivot;  // over the sum of the weights
 
-  Eigen::Matrix<double, 1, 6> at(const Eigen::Vector3d& x) const {
+  Eigen::Matrix<double, 1, Columns> at(const Eigen::Vector3d& x) const {
     return quadratic_basis((x - origin) / radius).transpose() * coefficients;
   }
 };
 
 // Weighted least-squares fit around the field's origin, coordinates divided by its radius.
-void fit(const std::vector<int>& patch, const Points& x, const Stresses& stress, double exponent,
-         PatchField& field) {
+template <int Columns>
+void fit(const std::vector<int>& patch, const Points& x, const Fields<Columns>& stress,
+         double exponent, PatchField<Columns>& field) {
   Eigen::Matrix<double, 10, 10> normal = Eigen::Matrix<double, 10, 10>::Zero();
-  Coefficients right = Coefficients::Zero();
+  Coefficients<Columns> right = Coefficients<Columns>::Zero(10, stress.cols());
   double total = 0.0;
   for (const int e : patch) {
     for (int q = 4 * e; q < 4 * e + 4; ++q) {
@@ -151,8 +158,9 @@ void fit(const std::vector<int>& patch, const Points& x, const Stresses& stress,
     }
   }
   if (patch.size() < kMinPatch) {  // a mesh of a few elements: the quadratic terms stay zero
-    field.coefficients.setZero();
-    field.coefficients.topRows<4>() = normal.topLeftCorner<4, 4>().ldlt().solve(right.topRows<4>());
+    field.coefficients.setZero(10, stress.cols());
+    field.coefficients.template topRows<4>() =
+        normal.topLeftCorner<4, 4>().ldlt().solve(right.template topRows<4>());
     field.least_pivot = 1.0;
     return;
   }
@@ -175,29 +183,29 @@ double patch_radius(const TetMesh& mesh, const std::vector<int>& patch,
 }
 
 // The field around a corner, on a patch that determines it.
-PatchField fit_around(const TetMesh& mesh, int corner, PatchFinder& finder, const Points& x,
-                      const Stresses& stress) {
+template <int Columns>
+PatchField<Columns> fit_around(const TetMesh& mesh, int corner, PatchFinder& finder,
+                               const Points& x, const Fields<Columns>& stress) {
   const std::vector<int>& patch = finder.around(corner);
-  PatchField field{mesh.nodes.row(corner).transpose(), 0.0, {}, 0.0};
+  PatchField<Columns> field{mesh.nodes.row(corner).transpose(), 0.0, {}, 0.0};
   do {
     field.radius = patch_radius(mesh, patch, field.origin);
-    fit(patch, x, stress, kExponent, field);
+    fit<Columns>(patch, x, stress, kExponent, field);
   } while (field.least_pivot < kLeastPivot && finder.grow_once());
   return field;
 }
 
-}  // namespace
-
-Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
+template <int Columns>
+Fields<Columns> recover(const TetMesh& mesh, const Fields<Columns>& stress) {
   const Points x = stress_points(mesh);
   PatchFinder finder(mesh);
   const int nodes = static_cast<int>(mesh.nodes.rows());
-  Stresses sum = Stresses::Zero(nodes, 6);
+  Fields<Columns> sum = Fields<Columns>::Zero(nodes, stress.cols());
   std::vector<int> count(at(nodes), 0), seen_from(at(nodes), -1);
   for (int v = 0; v < nodes; ++v) {
     check_interrupt();
     if (!finder.is_corner(v)) continue;
-    const PatchField field = fit_around(mesh, v, finder, x, points.stress);
+    const PatchField<Columns> field = fit_around<Columns>(mesh, v, finder, x, stress);
     sum.row(v) += field.coefficients.row(0);
     ++count[at(v)];
     for (std::size_t i = 0; i < finder.core(); ++i) {
@@ -218,6 +226,16 @@ Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
   return sum;
 }
 
+}  // namespace
+
+Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
+  return recover<6>(mesh, points.stress);
+}
+
+StressFields recover_fields(const TetMesh& mesh, const StressFields& points) {
+  return recover<Eigen::Dynamic>(mesh, points);
+}
+
 double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,
                        const Eigen::Vector2d& reference) {
   const Points x = stress_points(mesh);
@@ -226,10 +244,10 @@ double recovery_spread(const TetMesh& mesh, const PointStresses& points, int tri
   Eigen::Matrix<double, 6, 6> smooth = Eigen::Matrix<double, 6, 6>::Zero(), sharp = smooth;
   for (int k = 0; k < 3; ++k) {
     const int corner = mesh.boundary(triangle, k);
-    PatchField field = fit_around(mesh, corner, finder, x, points.stress);
+    PatchField<6> field = fit_around<6>(mesh, corner, finder, x, points.stress);
     for (auto& [stress, exponent] :
          {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
-      fit(finder.patch(), x, points.stress, exponent, field);
+      fit<6>(finder.patch(), x, points.stress, exponent, field);
       stress->row(k) += field.at(nodes.col(k));
       stress->row(3 + k) += 0.5 * field.at(nodes.col(3 + k));
       stress->row(3 + (k + 2) % 3) += 0.5 * field.at(nodes.col(3 + (k + 2) % 3));
@@ -246,10 +264,10 @@ double recovery_spread_inside(const TetMesh& mesh, const PointStresses& points, 
   PatchFinder finder(mesh);
   Voigt smooth = Voigt::Zero(), sharp = smooth;
   for (int k = 0; k < 4; ++k) {
-    PatchField field = fit_around(mesh, mesh.tets(element, k), finder, x, points.stress);
+    PatchField<6> field = fit_around<6>(mesh, mesh.tets(element, k), finder, x, points.stress);
     for (auto& [stress, exponent] :
          {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
-      fit(finder.patch(), x, points.stress, exponent, field);
+      fit<6>(finder.patch(), x, points.stress, exponent, field);
       *stress += 0.25 * field.at(position).transpose();
     }
   }

@@ -16,6 +16,11 @@ namespace codesign::fem {
 // and on a thick cylinder (docs/fem.md): third order where averaged element stresses have second.
 Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);
 
+// The same of any number of fields side by side, six columns each: at the points of PointStresses,
+// and recovered at the nodes.
+using StressFields = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+StressFields recover_fields(const TetMesh& mesh, const StressFields& points);
+
 // How much the von Mises stress (Pa) at a point of a boundary face depends on the recovery: the
 // difference between a fit that trusts near points more and one that smooths more.
 double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,

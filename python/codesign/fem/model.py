@@ -248,13 +248,22 @@ class AffineTraction:
 
 @dataclass(frozen=True)
 class Acceleration:
-    """A gravity-like field [m/s²]: every volume element is pulled by density times acceleration."""
+    """A gravity-like field [m/s²]: every volume element is pulled by density times acceleration.
+
+    gradient (3, 3) [1/s²], point [m]: the field is acceleration + gradient (x - point), as the inertia of a part that
+    turns is.
+    """
 
     acceleration: ArrayLike
+    gradient: ArrayLike = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    point: ArrayLike = (0.0, 0.0, 0.0)
 
     def native(self, mesh: TetMesh | None) -> _core.Acceleration:  # noqa: ARG002 (the same for every mesh)
         """The native value on a mesh."""
-        return _core.Acceleration(_vector(self.acceleration, "acceleration"))
+        gradient = np.asarray(self.gradient, dtype=float)
+        if gradient.shape != (3, 3):
+            raise ValueError(f"gradient must have shape (3, 3), got {gradient.shape}")
+        return _core.Acceleration(_vector(self.acceleration, "acceleration"), gradient, _vector(self.point, "point"))
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from codesign._core import fem as _core
 from codesign._core.fem import StaticResult as StaticResult
+from codesign._core.fem import UnitResponses as UnitResponses
 from codesign.fem.model import Load, Material, Support, TetMesh, native_loads, native_supports
 
 Solver = Literal["automatic", "direct", "iterative"]
@@ -122,6 +123,14 @@ class StaticSystem:
     def solve(self, loads: Sequence[Load]) -> StaticResult:
         """The response to one load case."""
         return self._system.solve(native_loads(self.mesh, loads))
+
+    def unit_responses(self, units: Sequence[Sequence[Load]]) -> UnitResponses:
+        """The answers to unit loads (each any number of loads), of which a history of loads is a sum at every instant.
+
+        `peak(history)` finds the largest stress of a history (instants, units), `at(factors)` gives one instant.
+        Raises: ModelError: a support is moved.
+        """
+        return self._system.unit_responses([native_loads(self.mesh, loads) for loads in units])
 
     def natural_frequencies(self, count: int = 6) -> Modes:
         """The lowest modes on the supports, from the same factor if there is one. Raises: ValueError: no density."""

@@ -1,0 +1,84 @@
+#include "fem/elasticity/held_part.hpp"
+
+#include <limits>
+#include <utility>
+
+#include "fem/stress/recovery.hpp"
+
+namespace codesign::fem {
+
+namespace {
+
+void read_forces(const HeldPart& part, const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
+                 StaticResult& r) {
+  r.reactions = Points::Zero(part.mesh.nodes.rows(), 3);
+  r.support_forces = Points::Zero(static_cast<Eigen::Index>(part.supports.size()), 3);
+  for (std::size_t d = 0; d < part.constraints.support.size(); ++d) {
+    const int support = part.constraints.support[d];
+    if (support < 0) continue;
+    const Eigen::Index i = static_cast<Eigen::Index>(d);
+    r.reactions(i / 3, i % 3) = internal[i] - load[i];
+    r.support_forces(support, i % 3) += internal[i] - load[i];
+  }
+}
+
+// What decides the safety factor, and its companion in a volume.
+PeakStress read_peak(const HeldPart& part, const PointStresses& points, const ExclusionZone& zone,
+                     StaticResult& r) {
+  const double volume = part.settings.stress_volume / part.settings.copies;
+  PeakStress peak = peak_stress(part.mesh, r.stress, zone);
+  if (part.settings.exclusion == ExclusionRule::published) {
+    r.stress_50 = stress_of_volume(part.mesh, points, part.clamped, zone.largest(), volume);
+    return peak;
+  }
+  const VolumeStress inside = volume_stress(part.mesh, r.stress, points, zone, volume);
+  r.stress_50 = inside.exceeded;
+  return inside.largest.value > peak.value ? inside.largest : peak;
+}
+
+void read_stress(const HeldPart& part, const std::vector<int>& loaded, const Eigen::VectorXd& u,
+                 StaticResult& r) {
+  const PointStresses points = point_stresses(part.mesh, part.material, u);
+  r.stress = recover_stress(part.mesh, points);
+  r.von_mises = von_mises(r.stress);
+  const ExclusionZone zone = exclusion_zone(part, loaded);
+  const PeakStress peak = read_peak(part, points, zone, r);
+  const PeakStress hidden = stress_left_out(part.mesh, r.stress, zone);
+  if (hidden.triangle >= 0) {
+    r.left_out = {hidden.value, hidden.position, zone.border_distance(hidden.position)};
+  }
+  r.counts_for_peak = counted_nodes(part.mesh, zone);
+  r.exclusion_smallest = zone.smallest();
+  r.exclusion_largest = zone.largest();
+  RecoveryError recovery = recovery_error(part.mesh, part.material, u, r.stress);
+  r.stress_error = peak_stress_error(part.mesh, points, recovery, peak);
+  r.energy_error = recovery.relative_energy;
+  r.element_error = std::move(recovery.element);
+  r.peak_stress = peak.value;
+  r.peak_position = peak.position;
+  r.safety_factor = peak.value > 0 ? part.material.yield_strength / peak.value
+                                   : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+ExclusionZone exclusion_zone(const HeldPart& part, const std::vector<int>& loaded) {
+  return {part.mesh,
+          {part.clamped, symmetry_triangles(part.mesh, part.supports), loaded},
+          {part.settings.exclusion, part.settings.exclusion_distance}};
+}
+
+StaticResult read_result(const HeldPart& part, const std::vector<int>& loaded,
+                         const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
+                         const Eigen::VectorXd& u) {
+  StaticResult r;
+  r.displacement = Eigen::Map<const Points>(u.data(), part.mesh.nodes.rows(), 3);
+  r.max_displacement = r.displacement.rowwise().norm().maxCoeff();
+  r.work = part.settings.copies * load.dot(u);
+  r.strain_energy = 0.5 * part.settings.copies * internal.dot(u);
+  read_forces(part, load, internal, r);
+  read_stress(part, loaded, u, r);
+  return r;
+}
+
+}  // namespace codesign::fem
