@@ -247,10 +247,11 @@ void insert_points(const SurfaceMesh& surface, const Patches& patches, int shell
 }
 
 // Protecting balls on the feature lines. The refinement looks for surface where it has points
-// already, so shells without lines (a round cavity) get some.
+// already, so shells without lines (a round cavity) get some; with `seed_shells` all get some, as
+// lines may lie in one plane and the shell far above it.
 void start_complex(const SurfaceMesh& surface, const Patches& patches, const SolidDomain& domain,
-                   const Criteria& criteria, const Control& control, const MeshWatch& watch,
-                   Complex& complex) {
+                   const Criteria& criteria, const Control& control, bool seed_shells,
+                   const MeshWatch& watch, Complex& complex) {
   MeshWatch::Alarm alarm(watch);
   CGAL::Mesh_3::internal::init_c3t3_with_features(
       complex, domain, criteria, control.nonlinear_growth_of_balls,
@@ -261,7 +262,8 @@ void start_complex(const SurfaceMesh& surface, const Patches& patches, const Sol
     for (const bool line : patches.line[t])
       if (line) has_line[static_cast<std::size_t>(patches.shell[t])] = true;
   for (int shell = 0; shell < patches.shells; ++shell)
-    if (!has_line[static_cast<std::size_t>(shell)]) insert_points(surface, patches, shell, complex);
+    if (seed_shells || !has_line[static_cast<std::size_t>(shell)])
+      insert_points(surface, patches, shell, complex);
   bool surface_found = false;
   if (complex.triangulation().dimension() == 3) {
     CGAL::Mesh_3::C3T3_helpers<Complex, SolidDomain>(complex, domain).update_restricted_facets();
@@ -320,10 +322,12 @@ LinearTets extract(const Complex& complex, const Patches& patches, const SolidOr
   return mesh;
 }
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 }  // namespace
 
 LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
-                         const MeshOptions& options, bool separate_patches, MeshWatch& watch) {
+                         const MeshOptions& options, Attempt attempt, MeshWatch& watch) {
   const auto& [surface, simplified, topology, patches, lines, oracle] = prepared;
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh in every run
   const SizingField length{&size, &watch, 1.0};
@@ -336,23 +340,24 @@ LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
     const Criteria criteria(
         set::edge_size = length, set::facet_size = length,
         set::facet_angle = options.facet_angle / kDegree, set::facet_distance = distance,
-        set::facet_topology = separate_patches ? CGAL::FACET_VERTICES_ON_SAME_SURFACE_PATCH
-                                               : CGAL::FACET_VERTICES_ON_SURFACE,
+        set::facet_topology = attempt.separate_patches ? CGAL::FACET_VERTICES_ON_SAME_SURFACE_PATCH
+                                                       : CGAL::FACET_VERTICES_ON_SURFACE,
         set::cell_radius_edge_ratio = options.radius_edge, set::cell_size = length);
     Control control;
     control.maximal_number_of_vertices = options.max_vertices;
     control.pointer_to_error_code = &error;
-    start_complex(surface, patches, domain, criteria, control, watch, complex);
+    start_complex(surface, patches, domain, criteria, control, attempt.seed_shells, watch, complex);
     CGAL::refine_mesh_3(complex, domain, criteria, set::no_exude(), set::no_perturb(),
                         set::no_odt(), set::no_lloyd(), set::no_reset_c3t3(), control,
                         set::non_manifold());
     if (error == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED)
       watch.report(MeshWatch::Limit::vertices, size, points_of(complex));
+    if (complex.number_of_cells_in_complex() == 0) throw MeshBreakdown("the mesh is empty");
     return extract(complex, patches, oracle);
   } catch (const MeshWatch::Stop& stop) {
     watch.report(stop.limit, size, points_of(complex));
   } catch (const CGAL::Failure_exception& e) {
-    throw MeshError(std::string("the mesher broke down: ") + e.what());
+    throw MeshBreakdown(std::string("the mesher broke down: ") + first_line(e.message()));
   }
 }
 

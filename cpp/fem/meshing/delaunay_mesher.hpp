@@ -1,5 +1,6 @@
 #pragma once
 
+#include "errors.hpp"
 #include "fem/meshing/linear_tets.hpp"
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/mesh_watch.hpp"
@@ -8,11 +9,22 @@
 
 namespace codesign::fem {
 
-// Delaunay refinement of the solid inside the surface; sides are labelled by patch. With
-// `separate_patches`, sides with corners inside two patches are refined too: they stand across a
-// thin wedge. Throws MeshLimitError on the limits of `options` and `watch`, MeshError if the
-// refinement breaks down.
+// What another attempt at a solid does beside smaller elements.
+struct Attempt {
+  bool separate_patches =
+      false;                 // refine sides with corners inside two patches, across thin wedges
+  bool seed_shells = false;  // start with points on every shell, not only on those without lines
+};
+
+// The refinement filled nothing, or its rounding errors contradict each other; another size leaves
+// that arrangement of points.
+struct MeshBreakdown : MeshError {
+  using MeshError::MeshError;
+};
+
+// Delaunay refinement of the solid inside the surface; sides are labeled by patch. Throws
+// MeshLimitError on the limits of `options` and `watch`, MeshBreakdown.
 LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
-                         const MeshOptions& options, bool separate_patches, MeshWatch& watch);
+                         const MeshOptions& options, Attempt attempt, MeshWatch& watch);
 
 }  // namespace codesign::fem

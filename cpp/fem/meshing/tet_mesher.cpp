@@ -103,9 +103,8 @@ void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, cons
 
 // One mesh at the given size; boundary_face holds patches.
 TetMesh mesh_once(const PreparedSurface& prepared, const SizeField& size,
-                  const MeshOptions& options, bool separate_patches, MeshWatch& watch) {
-  LinearTets tets = delaunay_mesh(prepared, size, options, separate_patches, watch);
-  if (tets.tets.empty()) throw MeshError("the mesh is empty");
+                  const MeshOptions& options, Attempt attempt, MeshWatch& watch) {
+  LinearTets tets = delaunay_mesh(prepared, size, options, attempt, watch);
   const int crumbs = remove_crumbs(tets, kCrumb);
   const int peeled = peel_flat_tets(tets, options.flat_angle, kStraightAngle);
   improve_tets(tets, options.sliver_angle, prepared.oracle, watch);
@@ -113,6 +112,19 @@ TetMesh mesh_once(const PreparedSurface& prepared, const SizeField& size,
   mesh.report = {prepared.simplified.collapsed, prepared.simplified.distance, crumbs, peeled,
                  watch.questions()};
   return mesh;
+}
+
+// The first mesh that the keeper accepts.
+TetMesh accepted_mesh(const PreparedSurface& prepared, TopologyKeeper& keeper,
+                      const MeshOptions& options, MeshWatch& watch) {
+  for (;;) try {
+      TetMesh mesh = mesh_once(prepared, keeper.size(), options, keeper.attempt(), watch);
+      if (keeper.accepts(mesh)) return mesh;
+    } catch (const MeshBreakdown& error) {
+      keeper.retry(error.what());
+    } catch (const MeshLimitError& error) {
+      throw MeshLimitError(keeper.explain(error.what()));
+    }
 }
 
 }  // namespace
@@ -125,16 +137,7 @@ TetMesh tetrahedralize(const SurfaceMesh& input, const SizeField& size,
   const PreparedSurface prepared = prepare_surface(input, size, options);
   watch.require_affordable(enclosed_volume(prepared.surface), size);
   TopologyKeeper keeper(prepared, size, options);
-  TetMesh mesh;
-  do {
-    try {
-      mesh = mesh_once(prepared, keeper.size(), options, keeper.separate_patches(), watch);
-    } catch (const MeshLimitError& error) {
-      throw MeshLimitError(keeper.explain(error.what()));
-    } catch (const MeshError& error) {
-      throw MeshError(keeper.explain(error.what()));
-    }
-  } while (!keeper.accepts(mesh));
+  TetMesh mesh = accepted_mesh(prepared, keeper, options, watch);
   if (options.curved)
     curve_edges(mesh, mesh.boundary_face, prepared.surface, prepared.lines, prepared.oracle, watch);
   for (int& label : mesh.boundary_face)

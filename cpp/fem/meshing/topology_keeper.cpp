@@ -14,6 +14,9 @@ namespace {
 constexpr double kResolved = 5e-5;  // m
 constexpr double kOfExtent = 5e-4;
 
+constexpr int kBreakdowns = 3;  // that are answered by another size
+constexpr double kOtherSize = 0.9;
+
 int total_genus(const Topology& topology) {
   int genus = 0;
   for (const int euler : topology.euler) genus += genus_of(euler);
@@ -66,6 +69,12 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
   if (walls_.empty()) walls_ = find_walls(prepared_, size_.base / kOfWall);
   size_ = refine_at(size_, places, walls_, ++round_);
   return false;
+}
+
+void TopologyKeeper::retry(const std::string& reason) {
+  if (breakdowns_++ == kBreakdowns)
+    throw MeshError(explain(reason + ", at four edge lengths: give another one"));
+  size_ = scaled(size_, kOtherSize);
 }
 
 std::string TopologyKeeper::explain(const std::string& reason) const {

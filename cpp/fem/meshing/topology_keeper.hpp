@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fem/mesh/tet_mesh.hpp"
+#include "fem/meshing/delaunay_mesher.hpp"
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/prepared_surface.hpp"
 #include "fem/meshing/size_field.hpp"
@@ -24,11 +25,15 @@ class TopologyKeeper {
 
   // What the next mesh is to be made with.
   const SizeField& size() const { return size_; }
-  bool separate_patches() const { return round_ > 0; }
+  Attempt attempt() const { return {round_ > 0, breakdowns_ > 0}; }
 
   // Whether the mesh has the topology of the surface; if not, the size is smaller afterwards.
   // mesh.boundary_face: patches. Throws MeshError, with a place, after the last round.
   bool accepts(const TetMesh& mesh);
+
+  // Asks for another mesh with slightly smaller elements everywhere, as the refinement broke down.
+  // Throws MeshError with `reason` after the last time.
+  void retry(const std::string& reason);
 
   // What a mesh of another topology could not be refined for; the reason alone if there was none.
   std::string explain(const std::string& reason) const;
@@ -41,6 +46,7 @@ class TopologyKeeper {
   SizeField size_;
   MeshOptions options_;
   int round_ = 0;
+  int breakdowns_ = 0;
   int small_ = 0;                  // faults too small to be refused
   std::string mismatch_;           // of the last mesh and where; empty before the first one
   std::vector<WallSample> walls_;  // once a mesh was refused

@@ -129,3 +129,48 @@ def test_default_size_follows_the_local_wall():
 def test_a_large_thin_plate_does_not_ask_for_more_elements_than_stated():
     size = fem.default_size(surface_of(box((0, 0, 0), (400, 400, 1))))
     assert size.smallest > 0.85e-3
+
+
+def dome(chords=16, rings=6, radius=45.0, height=90.0, jitter=1e-3):
+    """Half an ellipsoid on a disk, whose rim is uneven by `jitter`; its only sharp edges lie in (nearly) one plane."""
+    random = np.random.default_rng(0)
+    points = []
+    for ring in range(rings):
+        up, turn = ring / rings * np.pi / 2, 2 * np.pi * (np.arange(chords) + 0.5 * (ring % 2)) / chords
+        z = np.full(chords, height * np.sin(up)) + (jitter * random.standard_normal(chords) if ring == 0 else 0.0)
+        points.append(np.stack([radius * np.cos(up) * np.cos(turn), radius * np.cos(up) * np.sin(turn), z], axis=1))
+    points.append([[0.0, 0.0, height]])
+    return fem.SurfaceMesh(np.vstack(points) * 1e-3, dome_triangles(chords, rings))
+
+
+def dome_triangles(chords, rings):
+    """(m, 3): rings of points, each turned by half a chord from the one below, a tip, and a fan below."""
+    triangles = [[0, k + 1, k] for k in range(1, chords - 1)]
+    for ring in range(rings - 1):
+        for k in range(chords):
+            a, b = ring * chords + k, ring * chords + (k + 1) % chords
+            if ring % 2 == 0:
+                above, beside = a + chords, (ring + 1) * chords + (k - 1) % chords
+            else:
+                above, beside = b + chords, a + chords
+            triangles += [[a, b, above], [a, above, beside]]
+    last, tip = (rings - 1) * chords, rings * chords
+    triangles += [[last + k, last + (k + 1) % chords, tip] for k in range(chords)]
+    return np.array(triangles, dtype=np.int32)
+
+
+@pytest.mark.parametrize("size", [0.0108, 0.013])
+def test_a_dome_over_its_rim_is_filled(size):
+    surface = dome()
+    assert_same_as_surface(fem.tetrahedralize(surface, fem.SizeField(size)), surface, volume_tolerance=0.02)
+
+
+def test_a_breakdown_of_the_refinement_is_answered_by_another_size():
+    """Numbers in single precision: at this edge length the refinement contradicts itself by rounding."""
+    xs, ys = (-0.03522159531712532, 0.1574999988079071), (-0.03819999843835831, 0.09560000151395798)
+    zs = (0.05146408826112747, -0.00033591125975362957)
+    order = ((0, 0, 0), (0, 1, 0), (0, 0, 1), (0, 1, 1), (1, 1, 0), (1, 1, 1), (1, 0, 0), (1, 0, 1))
+    quads = ((0, 1, 2, 3), (1, 4, 3, 5), (4, 6, 5, 7), (6, 0, 7, 2), (6, 4, 0, 1), (5, 7, 3, 2))
+    triangles = np.array([t for a, b, c, d in quads for t in ((a, b, c), (c, b, d))], dtype=np.int32)
+    surface = fem.SurfaceMesh(np.array([(xs[i], ys[j], zs[k]) for i, j, k in order]), triangles)
+    assert_same_as_surface(fem.tetrahedralize(surface, fem.SizeField(0.012512632608364677)), surface)
