@@ -13,6 +13,7 @@ from codesign.problem.design_space import DesignValue
 StudyOption = Annotated[str, typer.Option("--study", "-s", help="A shipped study's name or the path of a study.toml.")]
 SetOption = Annotated[list[str], typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
+NoCacheOption = Annotated[bool, typer.Option("--no-cache", help="Compute everything again.")]
 TrajectoryOption = Annotated[str | None, typer.Option("--trajectory", "-t", help="A trajectory of the study.")]
 WorkersOption = Annotated[int | None, typer.Option(min=1, help="Worker processes; default: the study's.")]
 ClusterOption = Annotated[str | None, typer.Option(help="Dask scheduler tcp://host:port, or local:N.")]

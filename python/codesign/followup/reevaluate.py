@@ -10,11 +10,13 @@ from typing import Unpack
 
 from codesign.execution.pool import Executor, Task
 from codesign.problem.design_space import DesignValue
-from codesign.problem.protocols import Problem
+from codesign.problem.protocols import PartCache, Problem
 from codesign.search.base import Grid
 from codesign.search.driver import WAIT, checked
 from codesign.search.optimization import Resources, cache_path, make_executor, stored_study
 from codesign.search.progress import Progress
+from codesign.storage.cache import open_cache
+from codesign.storage.designs import keep_evaluation, known_evaluation
 from codesign.storage.records import Record
 from codesign.storage.runs import load_run
 from codesign.storage.store import RunStore
@@ -48,18 +50,41 @@ def revisit(
         known = {(record.grid, record.trajectory) for record in store.records()}
         missing = [pair for pair in pairs if pair not in known]
         if missing:
-            cache = cache_path(problem, resources)
-            executor = make_executor(problem, resources, cache, len(missing))
-            try:
-                _evaluate(problem, store, missing, executor, resources)
-            finally:
-                executor.close()
+            path = cache_path(problem, resources)
+            with open_cache(path, problem.identity.program) as cache:
+                missing = _take_known(problem, store, missing, cache)
+                if missing:
+                    executor = make_executor(problem, resources, path, len(missing))
+                    try:
+                        _evaluate(problem, store, missing, executor, cache, resources)
+                    finally:
+                        executor.close()
         found = {(record.grid, record.trajectory): record for record in store.records()}
         return [found[pair] for pair in pairs]
 
 
+def _take_known(
+    study: Problem, store: RunStore, pairs: list[tuple[Grid, str]], cache: PartCache | None
+) -> list[tuple[Grid, str]]:
+    """Stores what the cache knows; returns the other pairs."""
+    missing = []
+    for grid, trajectory in pairs:
+        known = known_evaluation(study, grid, cache, trajectory)
+        if known is None:
+            missing.append((grid, trajectory))
+            continue
+        store.enqueue([(None, None, grid, study.space.from_indices(grid).to_dict())], study.hash, trajectory)
+        store.finish(Record(None, None, grid, trajectory, known, cached=True))
+    return missing
+
+
 def _evaluate(
-    study: Problem, store: RunStore, pairs: list[tuple[Grid, str]], executor: Executor, resources: Resources
+    study: Problem,
+    store: RunStore,
+    pairs: list[tuple[Grid, str]],
+    executor: Executor,
+    cache: PartCache | None,
+    resources: Resources,
 ) -> None:
     designs = [study.space.from_indices(grid).to_dict() for grid, _ in pairs]
     for (grid, trajectory), design in zip(pairs, designs, strict=True):
@@ -75,6 +100,7 @@ def _evaluate(
             grid, trajectory = pairs[outcome.task.number]
             evaluation = checked(outcome.evaluation, study.objectives)
             store.finish(Record(None, None, grid, trajectory, evaluation, False, outcome.worker, outcome.seconds))
+            keep_evaluation(study, grid, evaluation, cache, trajectory)
             counts[evaluation.status] += 1
             running -= 1
         if notify is not None:

@@ -6,8 +6,6 @@ decides anything. A resumed run goes through the same asks; a design that the st
 
 from __future__ import annotations
 
-import hashlib
-import json
 import sys
 import time
 from collections import deque
@@ -22,6 +20,7 @@ from codesign.problem.protocols import PartCache, Problem
 from codesign.search.base import Grid, Repeatable, Search
 from codesign.search.progress import Progress
 from codesign.search.provenance import session_provenance
+from codesign.storage.designs import keep_evaluation, known_evaluation
 from codesign.storage.records import Generation, Record
 from codesign.storage.store import RunStore
 
@@ -243,12 +242,12 @@ class SearchDriver:
         with self._store.transaction():
             self._store.enqueue([(n, generation, grid, designs[grid]) for n, grid in rows], self._study.hash)
             for number, grid in new:
-                document = self._cache.get(self._key(grid)) if self._cache is not None else None
-                if document is None:
+                known = known_evaluation(self._study, grid, self._cache)
+                if known is None:
                     self._queue.append(number)
                 else:
                     self._cached += 1
-                    self._keep(Record(number, None, grid, "", Evaluation.from_dict(document), cached=True))
+                    self._keep(Record(number, None, grid, "", known, cached=True))
         for number, grid in enumerate(grids, asked):
             if grid in self._known:
                 record = self._known.pop(grid)
@@ -279,11 +278,8 @@ class SearchDriver:
                 self._keep(Record(*place, self._evaluation(outcome), False, outcome.worker, outcome.seconds))
                 self._running.discard(number)
             self._store.update_session(self._session, time.monotonic() - self._began)
-        if self._cache is not None:
-            for outcome in outcomes:
-                evaluation = self._evaluation(outcome)
-                if evaluation.status != "failed":
-                    self._cache.put(self._key(self._grids[outcome.task.number]), evaluation.to_dict())
+        for outcome in outcomes:
+            keep_evaluation(self._study, self._grids[outcome.task.number], self._evaluation(outcome), self._cache)
 
     def _evaluation(self, outcome: Outcome) -> Evaluation:
         return checked(outcome.evaluation, self._study.objectives)
@@ -292,10 +288,6 @@ class SearchDriver:
         self._store.finish(record)
         self._results[record.grid] = record.evaluation
         self._counts[record.evaluation.status] += 1
-
-    def _key(self, grid: Grid) -> str:
-        text = json.dumps([self._study.hash, list(grid)])
-        return "design " + hashlib.sha256(text.encode()).hexdigest()
 
     def _report(self) -> None:
         if self._notify is None:

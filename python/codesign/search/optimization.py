@@ -19,7 +19,7 @@ from codesign.search.provenance import check_search, search_identity
 from codesign.search.registry import find_search
 from codesign.search.sampling import sub_grid
 from codesign.search.settings import Settings
-from codesign.storage.cache import SqliteCache, default_cache_path
+from codesign.storage.cache import default_cache_path, open_cache
 from codesign.storage.runs import Run, load_run
 from codesign.storage.store import RunStore
 
@@ -232,13 +232,7 @@ def make_executor(study: Problem, resources: Resources, cache: Path | str | None
 
 
 def _drive(study: Problem, settings: Settings, store: RunStore, cache: Path | str | None, resources: Resources) -> None:
-    designs = SqliteCache(cache) if cache is not None else None
-    if designs is not None:
-        designs.register(study.identity.program)
     plan = settings.plan(study.space, study.objectives)
-    try:
+    with open_cache(cache, study.identity.program) as designs:
         driver = SearchDriver(study, plan, store, designs, resources.get("progress"))
         driver.run(lambda: make_executor(study, resources, cache, plan.total))
-    finally:
-        if designs is not None:
-            designs.close()

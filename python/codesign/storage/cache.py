@@ -6,11 +6,13 @@ may be deleted at any time. It can never fail an evaluation: a cache that cannot
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import os
 import sqlite3
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -108,6 +110,20 @@ class SqliteCache:
         if self._connection is not None:
             self._connection.close()
             self._connection = None
+
+
+@contextlib.contextmanager
+def open_cache(path: str | Path | None, program: Identity) -> Iterator[SqliteCache | None]:
+    """The cache in a file, for a program that uses it, in a `with` block; None: no cache."""
+    if path is None:
+        yield None
+        return
+    cache = SqliteCache(path)
+    try:
+        cache.register(program)
+        yield cache
+    finally:
+        cache.close()
 
 
 def default_cache_path(study_name: str) -> Path:

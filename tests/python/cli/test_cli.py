@@ -76,6 +76,10 @@ def test_evaluate_prints_the_document():
     document = json.loads(result.stdout)
     assert document["status"] == "feasible"
     assert document["design"] == {"angle": 15, "distance": 42, "offset": 80, "length": 108}
+    assert json.loads(codesign("evaluate", *ORIGINAL, "--json", "--no-cache").stdout)["flight"] != {}
+    again = codesign("evaluate", *ORIGINAL, "--json")
+    assert "known from the cache" in again.stderr
+    assert json.loads(again.stdout) == document
 
 
 def test_a_lost_flight_is_exit_code_1():

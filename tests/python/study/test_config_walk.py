@@ -151,6 +151,7 @@ def complete(raw: dict[str, Any]) -> None:
         "buckling_factor_min": 2.0, "limits": {"flight.max_torque": {"min": 0.0, "max": 60.0}},
     }  # fmt: skip
     raw["optimizer"] |= {"algorithm": "nsga2", "crossover_probability": 0.9, "mutation_probability": 0.2, "seed": 1}
+    raw["optimizer"]["evaluations"] = 160
 
 
 @pytest.fixture(scope="module")

@@ -8,12 +8,13 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from codesign.cli.console import out, print_confirmations, print_evaluation, print_json, shown
+from codesign.cli.console import err, out, print_confirmations, print_evaluation, print_json, shown
 from codesign.cli.export_formats import DEFAULT, FORMATS, parse_formats
 from codesign.cli.options import (
     DEFAULT_STUDY,
     EXAMPLE_DESIGN,
     JsonOption,
+    NoCacheOption,
     SetOption,
     StudyOption,
     TrajectoryOption,
@@ -30,13 +31,19 @@ def evaluate(
     study: StudyOption = DEFAULT_STUDY,
     trajectory: TrajectoryOption = None,
     confirm: Annotated[bool, typer.Option("--confirm", help="Full parts on fine meshes too (some seconds).")] = False,
+    no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
 ) -> int:
-    """One design through the whole chain: parts, stress, robot, flight, objectives."""
+    """One design through the whole chain: parts, stress, robot, flight, objectives; known ones from the cache."""
     from codesign.chain.study import load_study
+    from codesign.storage.cache import default_cache_path, open_cache
+    from codesign.storage.designs import evaluate_once
 
     loaded = load_study(study)
-    evaluation = loaded.evaluate(parse_design(set_), trajectory=trajectory)
+    with open_cache(None if no_cache else default_cache_path(loaded.name), loaded.identity.program) as cache:
+        evaluation, known = evaluate_once(loaded, parse_design(set_), cache, trajectory)
+    if known:
+        err.print("known from the cache; --no-cache computes it again")
     confirmations = loaded.confirm(evaluation.design) if confirm and evaluation.status != "failed" else {}
     if as_json:
         confirmed = {"confirmed": {name: c.confirmed for name, c in confirmations.items()}} if confirm else {}

@@ -15,6 +15,7 @@ from codesign.cli.options import (
     INTERRUPTED,
     ClusterOption,
     JsonOption,
+    NoCacheOption,
     RunArgument,
     StudyOption,
     WorkersOption,
@@ -51,7 +52,7 @@ def optimize(
     stall_generations: Annotated[
         int | None, typer.Option(help="Stop after so many generations without gain of hypervolume.")
     ] = None,
-    no_cache: Annotated[bool, typer.Option("--no-cache", help="Compute everything again.")] = False,
+    no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
 ) -> int:
     """The study: searches the design grid for the best compromises."""
