@@ -189,6 +189,7 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
         accuracy=stress.accuracy,
         exclusion=stress.exclusion,
         exclusion_distance=None if stress.exclusion_distance_mm is None else stress.exclusion_distance_mm * MILLIMETER,
+        edge_length=None if stress.edge_length_mm is None else stress.edge_length_mm * MILLIMETER,
         tolerance=stress.tolerance,
         memory_limit=stress.memory_limit_mib * MEBIBYTE,
         modes=MODES if _asks_for(config, "first_frequency", "frequencies") else 0,

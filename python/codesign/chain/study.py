@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from codesign.chain import chain
+from codesign.chain.controllability import Controllability, grounded, study_controllability
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignValue
 from codesign.study.loading import load
@@ -39,6 +40,15 @@ class Study(StudyData):
     ) -> Evaluation:
         """One design through the whole chain; `trajectory`: a name of the study, default its own."""
         return chain.evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
+
+    def controllability(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> Controllability:
+        """What thrusts and joints can do for the robot with a design's parts, at the start posture."""
+        return study_controllability(self, self.space.design(theta))
+
+    @property
+    def grounded(self) -> str | None:
+        """Why no design can fly, told before the search; None if nothing speaks against it."""
+        return grounded(self)
 
     def confirm(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> dict[str, Confirmation]:
         """Parts of a design by name, as analyzed and with full geometry on a fine mesh (some seconds per part)."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
@@ -13,6 +14,7 @@ from codesign.cli.console import out, shown
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
+    from codesign.problem.design_space import Design
 
 
 def study_summary(study: Study) -> dict[str, Any]:
@@ -33,14 +35,24 @@ def study_summary(study: Study) -> dict[str, Any]:
         "population": study.optimizer.population,
         "generations": study.optimizer.generations,
         "workers": study.execution.workers,
+        "control": control(study),
     }  # fmt: skip
 
 
+def typical(study: Study) -> Design:
+    """The baseline, or else the middle of the grid."""
+    return study.baseline or study.space.from_indices([(levels - 1) // 2 for levels in study.space.levels])
+
+
+def control(study: Study) -> dict[str, Any]:
+    """What thrusts and joints can do at the start posture, for a typical design; empty without a flight."""
+    return asdict(study.controllability(typical(study))) if study.config.flight else {}
+
+
 def measured(study: Study) -> dict[str, Any]:
-    """One evaluation, of the baseline or else of the middle of the grid: its status, reason, wall and own times [s]."""
-    middle = study.space.from_indices([(levels - 1) // 2 for levels in study.space.levels])
+    """One evaluation of a typical design: its status, reason, wall and own times [s]."""
     start = time.perf_counter()
-    evaluation = study.evaluate(study.baseline or middle)
+    evaluation = study.evaluate(typical(study))
     wall = time.perf_counter() - start
     return {
         "design": evaluation.design,
@@ -60,6 +72,7 @@ def print_study(summary: dict[str, Any]) -> None:
     out.print(f"{summary['designs']:,} designs", highlight=False)
     out.print(f"minimized: {', '.join(summary['objectives'])}")
     out.print(f"limited: {', '.join(map(_limit, summary['limits']))}")
+    print_control(summary["control"])
     if "evaluation" not in summary:
         return
     one = summary["evaluation"]
@@ -69,6 +82,19 @@ def print_study(summary: dict[str, Any]) -> None:
     hours = count * one["wall_seconds"] / summary["workers"] / 3600.0
     searched = f"{count:,} evaluations of the search on {summary['workers']} workers: about {hours:.2g} h"
     out.print(searched, highlight=False)
+
+
+def print_control(control: dict[str, Any]) -> None:
+    """One line of what jets and joints reach, and what to know about it."""
+    if not control:
+        return
+    out.print(
+        f"control: rank {control['rank']} of 6, condition {control['condition']:.2g}, "
+        f"thrust carries {control['hover_margin']:.2g} times the weight",
+        highlight=False,
+    )
+    for note in filter(None, (control["reason"], *control["notes"])):
+        out.print(f"  {note}", highlight=False)
 
 
 def _limit(limit: dict[str, Any]) -> str:

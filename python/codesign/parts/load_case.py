@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
+EDGE_SHARE, FINE_EDGE_SHARE = 0.35, 0.2  # of the mean wall thickness
 MAX_REFINEMENTS = 3  # halvings of the edge length around the peak
 LEAST_MEAN_NORMAL = 0.1  # length of a face's mean unit normal: 1 for a plane, 0.64 for a half bore, 0 for a whole one
 
@@ -70,9 +71,10 @@ class StressSettings:
     geometry: "simplified" or "full" (see the part). load, support: variant names that a part may offer.
     accuracy: "optimization" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
     error and its change are within the tolerance. exclusion, exclusion_distance [m]: where the peak stress is not read,
-    as in `fem.StaticSystem`. tolerance: wanted relative error of the peak stress. modes, buckling: how many natural
-    frequencies and buckling factors are wanted. memory_limit: [bytes] for the matrices and factors of one analysis; it
-    decides between factor and iteration.
+    as in `fem.StaticSystem`. edge_length: [m] of the elements of a part without its own size field; None: from its mean
+    wall thickness; "fine" ones are shorter in proportion. tolerance: wanted relative error of the peak stress. modes,
+    buckling: how many natural frequencies and buckling factors are wanted. memory_limit: [bytes] for the matrices and
+    factors of one analysis; it decides between factor and iteration.
     """
 
     material: fem.Material
@@ -84,6 +86,7 @@ class StressSettings:
     accuracy: Literal["optimization", "fine", "converged"] = "optimization"
     exclusion: Exclusion = "local"
     exclusion_distance: float | None = None
+    edge_length: float | None = None
     tolerance: float = 0.05
     memory_limit: float = 1400 * MEBIBYTE
     modes: int = 0
@@ -102,15 +105,22 @@ def part_case(part: Part, settings: StressSettings) -> _core.PartCase:
 
 
 def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
-    """Clamped and pressed faces by name; edge length from the mean wall thickness, shorter where walls are thin."""
+    """Clamped and pressed faces by name; edge length as asked for, else from the mean wall thickness."""
     surface = part.fem_surface(settings.geometry, settings.segments)
-    properties = part.mass_properties()
-    corners = surface.points[surface.triangles]
-    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    thickness = 2.0 * properties.volume / areas.sum()
-    edge_length = thickness * (0.2 if settings.accuracy == "fine" else 0.35)  # the peak's own size is found by refining
+    edge_length = _edge_length(part, surface, settings)
     cases = load_cases(settings, lambda load: face_force(surface, load, part.name))
     return native_case(settings, surface, fem.default_size(surface, edge_length), [clamp(*settings.supports)], cases)
+
+
+def _edge_length(part: Part, surface: fem.SurfaceMesh, settings: StressSettings) -> float:
+    """Of the elements [m]; the peak's own size is found by refining."""
+    share = FINE_EDGE_SHARE if settings.accuracy == "fine" else EDGE_SHARE
+    if settings.edge_length is not None:
+        return settings.edge_length * (share / EDGE_SHARE)
+    corners = surface.points[surface.triangles]
+    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    thickness = 2.0 * part.mass_properties().volume / areas.sum()
+    return float(thickness * share)
 
 
 def load_cases(settings: StressSettings, on_face: Callable[[PressedFace | PushedFace], fem.Load]) -> list[fem.LoadCase]:

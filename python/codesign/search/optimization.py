@@ -82,6 +82,8 @@ def optimize(
         ValueError (wrong settings), KeyboardInterrupt (Ctrl-C: nothing stored is lost, `resume` continues).
     """
     study = load_problem(study)
+    if why := getattr(study, "grounded", None):
+        raise StudyError(f"{study.source}: {why}; `codesign check` tells more")
     optimizer = study.optimizer
     size = optimizer.population if population is None else population
     algorithm = _own_algorithm(study) if algorithm is None else algorithm

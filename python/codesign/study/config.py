@@ -153,6 +153,8 @@ class FemConfig(Section, frozen=True, kw_only=True):
 
     exclusion: where the peak stress is not read, "local" (in proportion to what is near) or "published" (a fixed
     distance); see docs/fem.md. exclusion_distance_mm: instead of the rule's own distances; published: 3.
+    edge_length_mm: of the elements of parts that bring no size field; None: 0.35 of the mean wall thickness, which is
+    costly for thin tubes, where one element through the wall does.
     memory_limit_mib: for the matrices and factors of one part; what needs more is solved by iteration, or refused.
     """
 
@@ -162,6 +164,7 @@ class FemConfig(Section, frozen=True, kw_only=True):
     accuracy: Literal["optimization", "fine", "converged"] = "optimization"
     exclusion: Literal["local", "published"] = "local"
     exclusion_distance_mm: NonNegative | None = None
+    edge_length_mm: Positive | None = None
     tolerance: Positive = 0.05
     memory_limit_mib: Annotated[int, Meta(ge=64, le=2**30)] = 1400
 

@@ -40,7 +40,7 @@ def test_units_are_those_that_the_keys_say(key, expected):
     assert unit(key) == expected
 
 
-@pytest.mark.parametrize("study", ["ironcub", "gimbal_quad"])
+@pytest.mark.parametrize("study", ["ironcub", "gimbal_quad", "hexarotor"])
 def test_shipped_studies_match_the_schema_and_a_misspelt_key_does_not(study):
     jsonschema = pytest.importorskip("jsonschema")
     schema = json.loads(json.dumps(study_schema()))

@@ -33,6 +33,8 @@ def check(
 ) -> int:
     """Everything that is wrong with a study, at once; else what varies, what is minimized and what must hold.
 
+    A robot that cannot hover or hold its attitude at its start posture is wrong, too.
+
     Exit code 2 if anything is wrong.
     """
     from codesign.chain.study import load_study
@@ -40,13 +42,15 @@ def check(
     from codesign.study.loading import find_problems
 
     problems = find_problems(study)
-    if problems:
+    loaded = None if problems else load_study(study)
+    if loaded is not None and (why := loaded.grounded):
+        problems = [f"{loaded.path}: flight: {why}"]
+    if problems or loaded is None:
         if as_json:
             print_json({"problems": problems})
         for problem in [] if as_json else problems:
             out.print(problem, soft_wrap=True)
         return 2
-    loaded = load_study(study)
     summary = study_summary(loaded) | ({"evaluation": measured(loaded)} if time else {})
     if as_json:
         print_json({"problems": [], **summary})

@@ -1,0 +1,1 @@
+"""A hexarotor with tilted rotors on tube arms: no joints, six propellers."""
