@@ -137,6 +137,7 @@ def complete(raw: dict[str, Any]) -> None:
     ]
     raw["parts"][0]["cases"] = [{"name": "thrust", "loads": loads, "safety_factor_min": 5.0}]
     raw["fem"] |= {"load": "uniform", "support": "published", "exclusion_distance_mm": 3.0, "memory_limit_mib": 1400}
+    raw["fem"]["edge_length_mm"] = 2.0
     raw["flight"] |= {"jet_model": "turbine", "duration_s": 0.08}
     raw["flight"]["initial_state"] |= {"base_rpy_deg": [0.0, 0.0, 0.0], "free_fall_first_step": True}
     raw["flight"]["joint_groups"][0]["range_scale"] = 1.0
