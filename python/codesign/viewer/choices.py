@@ -10,6 +10,7 @@ from typing import Any
 from codesign.errors import CodesignError
 from codesign.problem.design_space import DesignValue, value_text
 from codesign.problem.evaluation import Evaluation
+from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, load_details
 from codesign.report.reading import read_report_data, same_study, study_of
 
@@ -27,9 +28,10 @@ class Choice:
 
 def find_choices(
     study: Any, design: Mapping[str, DesignValue] | None, run_directory: str | Path | None
-) -> tuple[list[Choice], Any, dict[str, Detail]]:
-    """What can be picked, the one to show first at the head; the study; details that are known."""
+) -> tuple[list[Choice], Any, dict[str, Detail], ReportData | None]:
+    """What can be picked, the one to show first at the head; the study; details that are known; the run."""
     choices: list[Choice] = []
+    run = None
     details: dict[str, Detail] = {}
     if run_directory is not None:
         directory = Path(run_directory)
@@ -53,7 +55,7 @@ def find_choices(
         choices.append(Choice(ORIGINAL, study.baseline.to_dict()))
     if not choices:
         raise CodesignError("nothing to show: give a design, or a run that has designs")
-    return choices, study, details
+    return choices, study, details, run
 
 
 def details_folder(run_directory: str | Path | None, study: Any) -> Path | None:

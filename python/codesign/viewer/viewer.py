@@ -20,12 +20,16 @@ from codesign.errors import CodesignError, ExecutionError
 from codesign.files import check_target, write_text
 from codesign.problem.design_space import DesignValue
 from codesign.report.compute import compute_detail
+from codesign.report.data import ReportData
 from codesign.report.details import Detail, detail_key, save_detail
 from codesign.report.link_meshes import absence_in_words, absent_meshes, package_paths
+from codesign.report.page.what_if import what_if_models
 from codesign.report.scene import robot_scene, round_number
+from codesign.surrogate.what_if import WhatIf
 from codesign.viewer.actor import PART, Actor, Array
 from codesign.viewer.choices import ORIGINAL, Choice, details_folder, find_choices
 from codesign.viewer.panel import facts, joint_angles, legend
+from codesign.viewer.what_if import WhatIfPanel
 
 FRAMES_PER_SECOND = 20.0
 RECORDED_PER_SECOND = 12.5
@@ -54,8 +58,13 @@ def view(
         trajectory: of the study, by default its own.   packages: folders searched for the robot's real link meshes.
     Raises: StoreError, StudyError, DesignError; CodesignError if the first design cannot be built or flown.
     """
-    choices, study, details = find_choices(study, design, run_directory)
-    return Viewer(study, choices, details, details_folder(run_directory, study), trajectory, host, port, packages)
+    choices, study, details, run = find_choices(study, design, run_directory)
+    folder = details_folder(run_directory, study)
+    viewer = Viewer(study, choices, details, folder, trajectory, host, port, packages)
+    models = what_if_models(run) if run is not None else None
+    if run is not None and models is not None:
+        viewer.add_what_if(run, models)
+    return viewer
 
 
 def record(
@@ -104,6 +113,7 @@ class Viewer:
         self._ended = threading.Event()
         self._time = 0.0
         self._beside: Actor | None = None
+        self.what_if: WhatIfPanel | None = None
         self._set_stage()
         self._make_controls()
         self.show(choices[0].name)
@@ -146,6 +156,10 @@ class Viewer:
     def link_position(self, link: str) -> tuple[float, float, float]:
         """Where a link is at the moment shown, world axes [m]."""
         return self._actor.position(link)
+
+    def add_what_if(self, run: ReportData, models: WhatIf) -> None:
+        """Adds sliders of the design variables with predictions; see `what_if`."""
+        self.what_if = WhatIfPanel(self._server, run, models)
 
     def show(self, name: str) -> None:
         """Shows another design, by its name in the list; computes its stress and flight if they are not known."""

@@ -13,6 +13,7 @@ import synthetic_run
 from browser import open_browser, visit
 from codesign.report import write_report
 from codesign.report.details import FOLDER, save_detail
+from codesign.report.page.what_if import what_if_models
 from codesign.report.reading import read_report_data
 from synthetic_details import detail
 
@@ -137,6 +138,32 @@ def test_on_paper_everything_is_drawn_and_charts_fill_their_columns(browser, add
         assert page.locator("#parts .scale").first.is_visible()
         page.evaluate("window.dispatchEvent(new Event('afterprint'))")
         assert page.evaluate("document.documentElement.classList.contains('printing')") is False
+
+
+def test_sliders_predict_what_the_models_in_python_predict(browser, address):
+    run = read_report_data(Path(address.removeprefix("file://")).parent, STUDY)
+    models = what_if_models(run)
+    with visit(browser, address) as page:
+        page.locator("#what-if").scroll_into_view_if_needed()
+        page.wait_for_selector("#what-if-numbers .predicted")
+        for grid in ((8, 10, 4, 33), (20, 2, 15, 7)):
+            shown = page.evaluate("g => whatIf.numbers.map(model => predicted(model, g))", list(grid))
+            for number, found in zip(models.numbers, shown, strict=True):
+                expected = models.predict(grid)[number.key]
+                width = expected.bands[1][1] - expected.bands[1][0]
+                assert found["mean"] == pytest.approx(expected.mean, abs=0.01 * width)
+                for ends, wanted in zip(found["bands"], expected.bands, strict=True):
+                    assert ends == pytest.approx(wanted, abs=0.02 * width)
+            assert page.evaluate("g => completes(g)", list(grid)) == pytest.approx(models.completes(grid), abs=1e-3)
+        assert page.locator("#what-if-notes .notice").count() == 0
+        page.evaluate("element('slider-0').value = 78")
+        page.evaluate("element('slider-0').dispatchEvent(new Event('input', {bubbles: true}))")
+        page.wait_for_selector("#what-if-notes .notice.bad")
+        assert "outside of all designs" in page.locator("#what-if-notes").inner_text()
+        assert page.locator("#what-if-numbers .band .wide").count() == 0
+        page.click("#what-if-selected")
+        assert "This design was evaluated" in page.locator("#what-if-notes").inner_text()
+        assert page.locator("#what-if-numbers .predicted").first.inner_text().count("evaluated") == 1
 
 
 @pytest.mark.parametrize(("dark", "width"), [(True, 1280), (False, 380)])

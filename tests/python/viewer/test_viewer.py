@@ -53,6 +53,18 @@ def browser() -> Iterator[Any]:
     yield from open_browser()
 
 
+def test_sliders_predict_other_designs(viewer):
+    assert viewer.what_if is not None
+    assert "evaluated as design" in viewer.what_if.text
+    viewer.what_if.set((8, 10, 4, 33))
+    assert "Momentum error: **" in viewer.what_if.text
+    assert "(90 %: " in viewer.what_if.text
+    assert "leave-one-out" in viewer.what_if.text
+    viewer.what_if.set((78, 10, 4, 33))
+    assert "Outside of all designs with a result" in viewer.what_if.text
+    assert "(90 %: " not in viewer.what_if.text
+
+
 def test_the_run_offers_its_designs(viewer):
     names = viewer.names
     assert names[0] == "recommended"

@@ -15,9 +15,10 @@ from codesign.report.page.document import page_document
 from codesign.report.page.sections import sections
 from codesign.report.page.summary import summary
 from codesign.report.page.validation import strips
+from codesign.report.page.what_if import what_if_document, what_if_models
 from codesign.report.validation import Validation
 
-SCRIPTS = ("base.js", "front.js", "table.js", "design.js", "search.js", "main.js")
+SCRIPTS = ("base.js", "front.js", "table.js", "design.js", "search.js", "whatif.js", "main.js")
 
 
 def render(
@@ -38,7 +39,10 @@ def render(
     read = {
         name: folder.joinpath(name).read_text(encoding="utf-8") for name in ("template.html", "style.css", *SCRIPTS)
     }
-    blocks = sections(run, validation)
+    models = what_if_models(run)
+    blocks = sections(run, validation, models)
+    document = page_document(run, details, files)
+    document |= {"validation": strips(run, validation), "what_if": what_if_document(run, models)}
     return Template(read["template.html"]).substitute(
         version=escape(codesign.__version__),
         title=escape(run.title),
@@ -48,7 +52,7 @@ def render(
         summary=summary(run, picture, validation),
         sections="\n".join(block.html for block in blocks),
         footer=f"<p>Made by codesign {escape(codesign.__version__)}. This file is complete: it needs no network.</p>",
-        data=_json(page_document(run, details, files) | {"validation": strips(run, validation)}),
+        data=_json(document),
         plotly=get_plotlyjs(),
         script="\n".join(read[name] for name in SCRIPTS),
     )

@@ -61,6 +61,7 @@ function paint(theme) {
   document.documentElement.dataset.theme = theme;
   painted(drawFront);
   whenVisible(element('progress'), drawProgress);
+  if (element('what-if-numbers')?.innerHTML) painted(drawWhatIf);
   whenVisible(element('validation-chart'), drawValidation);
   if (known(state.selected)) { drawParts(state.selected); drawFlight(state.selected); }
 }
@@ -87,6 +88,7 @@ window.addEventListener('resize', hintSideways);
 if (!FILTERS.front || !designs.some(FILTERS.front)) table.filter = 'all';
 frontControls();
 tableControls();
+whatIfControls();
 drawTable();
 paint(remembered() || (system.matches ? 'dark' : 'light'));
 if (known(state.selected)) { card(state.selected); markRow(); }

@@ -8,7 +8,9 @@ from html import escape
 from codesign.problem.quantities import words as spelled
 from codesign.report.data import ReportData, reasons
 from codesign.report.page.validation import validation_tables
+from codesign.report.page.what_if import section_text
 from codesign.report.validation import Validation
+from codesign.surrogate.what_if import WhatIf
 
 SHOWN_IDS = 8  # of designs that share a reason
 ANNOUNCEMENT = '<p id="announcement" role="status" aria-live="polite" class="skip"></p>'
@@ -32,7 +34,7 @@ class Block:
     html: str
 
 
-def sections(run: ReportData, validation: Validation | None = None) -> list[Block]:
+def sections(run: ReportData, validation: Validation | None = None, models: WhatIf | None = None) -> list[Block]:
     """The sections that have something to show."""
     found = []
     if run.front:
@@ -41,6 +43,8 @@ def sections(run: ReportData, validation: Validation | None = None) -> list[Bloc
         found.append(_block("design", "Design", "Selected design", "", CARD + ANNOUNCEMENT))
     if run.entries:
         found += [_parts_and_flight(), _designs(run)]
+    if models is not None:
+        found.append(_what_if(run, models))
     if validation is not None:
         found.append(_validation(run, validation))
     if len(run.front) > 1:
@@ -111,6 +115,20 @@ def _designs(run: ReportData) -> Block:
     against = " Percentages compare with the original." if run.baseline_vector is not None else ""
     text = f"Sort by a column’s head; select with a click or with the arrow keys.{against}"
     return _block("designs", "All designs", "All designs", text, body, controls)
+
+
+def _what_if(run: ReportData, models: WhatIf) -> Block:
+    chart = ""
+    if len(run.objectives) > 1:
+        label = "The prediction with its 90 % bands beside the best compromises"
+        chart = f'<div id="what-if-chart" role="img" aria-label="{label}"></div>'
+    body = (
+        '<div class="what-if"><div><div id="what-if-sliders" class="sliders"></div>'
+        '<p class="count"><button type="button" class="link" id="what-if-selected">Start from the selected design'
+        f'</button></p><div id="what-if-notes" aria-live="polite"></div>{chart}</div>'
+        '<div id="what-if-numbers"></div></div>'
+    )
+    return _block("what-if", "What if", "What if", section_text(run, models), body)
 
 
 def _validation(run: ReportData, validation: Validation) -> Block:
