@@ -12,7 +12,7 @@ from codesign.surrogate.what_if import NumberModel, WhatIf
 
 TEXT = (
     "Predictions of a model of the evaluated designs (Gaussian processes), no evaluations: dark bands hold 50 %, light "
-    "ones 90 % of designs like those evaluated; of designs that a search chooses from few results somewhat less. "
+    "ones 90 % of designs like those evaluated; of designs that a search chooses by such models perhaps fewer. "
     "Leave-one-out tells how far each evaluated design is from what the others predict, as a share of the spread, and "
     "how many lie in their 90 % band. Before building a design, evaluate it."
 )
