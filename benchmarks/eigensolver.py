@@ -36,7 +36,7 @@ def main() -> None:
     for name, part in study.build_parts(DESIGNS[0]).items():
         case = part_case(part, stress_settings(study.config, name))
         with tempfile.TemporaryDirectory() as folder:
-            write_model(_core.analyse_part(case).mesh, case, Path(folder) / "model")
+            write_model(_core.analyze_part(case).mesh, case, Path(folder) / "model")
             for modes in MODES:
                 command = [str(given.program), f"{folder}/model", str(modes), str(given.repeats)]
                 row = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout)

@@ -48,7 +48,7 @@ def whole(case: _core.PartCase, repeats: int) -> tuple[_core.PartAnalysis, float
     seconds = []
     for _ in range(repeats):
         start = time.process_time()
-        analysis = _core.analyse_part(case)
+        analysis = _core.analyze_part(case)
         seconds.append(time.process_time() - start)
     return analysis, min(seconds)
 

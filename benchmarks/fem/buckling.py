@@ -32,7 +32,7 @@ def analyze(part: Part, settings: StressSettings, count: int) -> tuple[_core.Par
     case = part_case(part, settings)
     case.buckling = count
     start = time.process_time()
-    analysis = _core.analyse_part(case)
+    analysis = _core.analyze_part(case)
     return analysis, time.process_time() - start
 
 

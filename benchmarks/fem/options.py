@@ -35,7 +35,7 @@ MEGA, MILLI = 1e6, 1e-3
 def analyze(part: Part, settings: StressSettings) -> tuple[_core.PartAnalysis, float]:
     """Result and CPU seconds."""
     start = time.process_time()
-    analysis = _core.analyse_part(part_case(part, settings))
+    analysis = _core.analyze_part(part_case(part, settings))
     return analysis, time.process_time() - start
 
 
@@ -96,7 +96,7 @@ def mesh_sizes(part: Part, settings: StressSettings) -> None:
         case = part_case(part, settings)
         sources = [fem.SizeSource(s.points, scale * s.size, s.growth, s.radius) for s in case.size.sources]
         case.size = fem.SizeField(scale * case.size.base, sources)
-        results.append(_core.analyse_part(case).result)
+        results.append(_core.analyze_part(case).result)
     cells = [
         f"{value / MEGA:.2f}" for name in ("stress_50", "peak_stress") for value in (getattr(r, name) for r in results)
     ]

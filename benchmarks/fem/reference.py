@@ -38,7 +38,7 @@ def analyze(part: str, design: dict[str, float], accuracy: str, geometry: str) -
     settings = replace(stress_settings(study.config, part), accuracy=accuracy, geometry=geometry)
     case = part_case(shape, settings)
     start = time.process_time()
-    analysis = _core.analyse_part(case)
+    analysis = _core.analyze_part(case)
     return analysis, time.process_time() - start
 
 

@@ -46,7 +46,7 @@ def reference(part: Part, settings: StressSettings) -> _core.PartAnalysis:
     """On the fine mesh, halved around the peak whatever its estimate."""
     case = part.stress_case(replace(settings, accuracy="fine"))  # type: ignore[attr-defined]
     case.tolerance, case.max_refinements = 1e-9, 1
-    return _core.analyse_part(case)
+    return _core.analyze_part(case)
 
 
 def row(part: Part, settings: StressSettings, factor: float) -> bool:
@@ -55,7 +55,7 @@ def row(part: Part, settings: StressSettings, factor: float) -> bool:
     case = part.stress_case(settings)  # type: ignore[attr-defined]
     sources = [fem.SizeSource(s.points, factor * s.size, s.growth, s.radius) for s in case.size.sources]
     case.size = fem.SizeField(case.size.base, sources)
-    analyzed = _core.analyse_part(case)
+    analyzed = _core.analyze_part(case)
     seconds = time.process_time() - start
     result, exact = analyzed.result, reference(part, settings).result
     deviation = result.peak_stress / exact.peak_stress - 1.0

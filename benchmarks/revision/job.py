@@ -27,7 +27,7 @@ OTHER = {"angle": 60, "distance": 60, "offset": 100, "length": 150}  # shares no
 PLACES = {
     "stress_settings": ("codesign.chain.chain", "codesign.pipeline"),
     "part_case": ("codesign.parts.load_case", "codesign.analysis"),
-    "analyse_part": ("codesign._core",),
+    "analyze_part": ("codesign._core",),
     "fly_robot": ("codesign.chain.fly", "codesign.pipeline"),
 }
 
@@ -55,7 +55,7 @@ def times() -> dict[str, float]:
     study = codesign.load_study("ironcub")
     parts = study.build_parts(DESIGN)
     cases = {n: find("part_case")(p, find("stress_settings")(study.config, n)) for n, p in parts.items()}
-    seconds = {f"{n}: surface to stress": cpu(lambda c=c: find("analyse_part")(c)) for n, c in cases.items()}
+    seconds = {f"{n}: surface to stress": cpu(lambda c=c: find("analyze_part")(c)) for n, c in cases.items()}
     robot = study.build_robot(DESIGN)
     seconds["flight of 42 s"] = cpu(lambda: find("fly_robot")(study, robot))
     seconds["evaluate, cold"] = cpu(lambda: study.evaluate(OTHER))

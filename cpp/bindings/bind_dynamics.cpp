@@ -351,22 +351,22 @@ Args:
     wrenches: frame name to force and moment (6,) [N, N m], world axes, at the frame's origin.
 Raises: SolverError where the mass matrix is singular.)");
   m.def("center_of_mass", &center_of_mass, "model"_a, "base_pose"_a, "s"_a,
-        "Centre of mass (3,) in the world [m].");
+        "Center of mass (3,) in the world [m].");
   m.def("center_of_mass_velocity", &center_of_mass_velocity, "model"_a, "base_pose"_a, "s"_a,
-        "nu"_a, "Velocity of the centre of mass (3,) [m/s].");
+        "nu"_a, "Velocity of the center of mass (3,) [m/s].");
   m.def("center_of_mass_jacobian", &center_of_mass_jacobian, "model"_a, "base_pose"_a, "s"_a,
-        "Jacobian of the centre of mass (3, 6+n).");
+        "Jacobian of the center of mass (3, 6+n).");
   m.def("centroidal_momentum", &centroidal_momentum, "model"_a, "base_pose"_a, "s"_a, "nu"_a,
-        "Linear and angular momentum about the centre of mass (6,), world axes.");
+        "Linear and angular momentum about the center of mass (6,), world axes.");
   m.def("centroidal_momentum_matrix", &centroidal_momentum_matrix, "model"_a, "base_pose"_a, "s"_a,
         "C (6, 6+n) with C nu = centroidal_momentum.");
   m.def("centroidal_momentum_bias", &centroidal_momentum_bias, "model"_a, "base_pose"_a, "s"_a,
         "nu"_a, "Rate of C times nu (6,): rate of the momentum where nu_dot = 0.");
   m.def("locked_inertia", &locked_inertia, "model"_a, "base_pose"_a, "s"_a,
-        "Inertia (3, 3) of the robot frozen in its posture, about the centre of mass, world axes.");
+        "Inertia (3, 3) of the robot frozen in its posture, about the center of mass, world axes.");
   m.def("kinetic_energy", &kinetic_energy, "model"_a, "base_pose"_a, "s"_a, "nu"_a, "[J]");
   m.def("potential_energy", &potential_energy, "model"_a, "base_pose"_a, "s"_a,
-        "[J], zero with the centre of mass at height 0 of the world.");
+        "[J], zero with the center of mass at height 0 of the world.");
   m.def("frame_pose", &frame_pose, "model"_a, "base_pose"_a, "s"_a, "frame"_a,
         "Pose (4, 4) of a link in the world.");
   m.def("frame_jacobian", &frame_jacobian, "model"_a, "base_pose"_a, "s"_a, "frame"_a,

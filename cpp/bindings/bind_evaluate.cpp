@@ -86,7 +86,7 @@ void bind_evaluate(py::module_& m) {
                     "why refining ended without convergence; empty otherwise")
       .def_readonly("mesh_seconds", &fem::PartAnalysis::mesh_seconds)
       .def_readonly("solve_seconds", &fem::PartAnalysis::solve_seconds);
-  m.def("analyse_part", &fem::analyse_part, "part"_a, py::call_guard<py::gil_scoped_release>(),
+  m.def("analyze_part", &fem::analyze_part, "part"_a, py::call_guard<py::gil_scoped_release>(),
         "Surface to safety factor. Raises MeshError, SolverError.");
 
   py::class_<DesignResult>(m, "DesignResult")

@@ -54,11 +54,11 @@ void bind_box_qp(py::module_& m) {
       .value("bad_data", QpStatus::kBadData, "a value is not a number, or bounds are crossed");
   py::class_<BoxQpResult>(m, "BoxQpResult", "Solution of a box QP with its certificate.")
       .def_readonly("status", &BoxQpResult::status)
-      .def_readonly("x", &BoxQpResult::x, "(n,) the minimiser")
+      .def_readonly("x", &BoxQpResult::x, "(n,) the minimizer")
       .def_readonly("multipliers", &BoxQpResult::multipliers,
                     "(n,) H x + g at the solution: >= 0 where x is at its lower bound, <= 0 at its "
                     "upper, 0 elsewhere")
-      .def_readonly("iterations", &BoxQpResult::iterations, "Cholesky factorisations")
+      .def_readonly("iterations", &BoxQpResult::iterations, "Cholesky factorizations")
       .def_readonly("kkt_residual", &BoxQpResult::kkt_residual,
                     "largest violation of the optimality conditions, relative to the terms of the "
                     "gradient; independent of the variables' units");
@@ -70,7 +70,7 @@ void bind_box_qp(py::module_& m) {
         return solve_checked(solver, H, g, lower, upper);
       },
       py::arg("H"), py::arg("g"), py::arg("lower"), py::arg("upper"),
-      "Minimise 0.5 x'Hx + g'x with lower <= x <= upper; H (n, n) symmetric positive definite, "
+      "Minimize 0.5 x'Hx + g'x with lower <= x <= upper; H (n, n) symmetric positive definite, "
       "bounds may be infinite or equal. Raises ValueError on wrong sizes, NaN, an asymmetric H or "
       "crossed bounds; everything else is a status of the result.");
   py::class_<BoxQpSolver>(m, "BoxQpSolver",
@@ -122,7 +122,7 @@ void bind_histories(py::class_<FlightLog>& log) {
   bind_history<&L::angular_velocity_reference>(log, "angular_velocity_reference", Shape::kRows,
                                                "(N, 3) base axes [rad/s]");
   bind_history<&L::momentum>(log, "momentum", Shape::kRows,
-                             "(N, 6) linear, angular about the centre of mass");
+                             "(N, 6) linear, angular about the center of mass");
   bind_history<&L::momentum_error>(log, "momentum_error", Shape::kRows, "(N, 6) E_l, E_w");
   bind_history<&L::thrust>(log, "thrust", Shape::kRows, "(N, jets) [N]");
   bind_history<&L::thrust_rate_command>(log, "thrust_rate_command", Shape::kRows,
@@ -136,7 +136,7 @@ void bind_histories(py::class_<FlightLog>& log) {
   bind_history<&L::clearance>(log, "clearance", Shape::kSeries,
                               "(N,) lowest contact point above the ground [m]");
   bind_history<&L::qp_iterations>(log, "qp_iterations", Shape::kRows,
-                                  "(N, 2) factorisations of the momentum and the torque QP");
+                                  "(N, 2) factorizations of the momentum and the torque QP");
   bind_history<&L::active_bounds>(log, "active_bounds", Shape::kSeries, "(N,) of the momentum QP");
 }
 
@@ -153,7 +153,7 @@ std::optional<std::string> reason_text(const FlightLog& log) {
     case FailureReason::kNotFinite:
       return "a value is not finite";
     case FailureReason::kComError:
-      return "centre of mass too far from its reference";
+      return "center of mass too far from its reference";
     case FailureReason::kAttitudeError:
       return "attitude too far from its reference";
     case FailureReason::kJointSpeed:
@@ -166,7 +166,7 @@ void bind_log(py::module_& m) {
   py::enum_<FlightStatus>(m, "FlightStatus", "Whether the flight reached its end.")
       .value("completed", FlightStatus::kCompleted)
       .value("failed", FlightStatus::kFailed);
-  py::class_<FlightObjectives>(m, "FlightObjectives", "One family of objectives, to be minimised.")
+  py::class_<FlightObjectives>(m, "FlightObjectives", "One family of objectives, to be minimized.")
       .def_readonly("momentum", &FlightObjectives::momentum)
       .def_readonly("joint_velocity", &FlightObjectives::joint_velocity)
       .def_readonly("thrust", &FlightObjectives::thrust, "mean total thrust [N]");
@@ -178,7 +178,7 @@ void bind_log(py::module_& m) {
   py::class_<FlightProfile>(m, "FlightProfile", "Wall time of a flight by phase of the step [s].")
       .def_readonly("plant", &FlightProfile::plant, "integration, jets")
       .def_readonly("terms", &FlightProfile::terms,
-                    "kinematics, inertias, mass matrix and its factorisation, Jacobians")
+                    "kinematics, inertias, mass matrix and its factorization, Jacobians")
       .def_readonly("task", &FlightProfile::task, "references, building of the momentum QP")
       .def_readonly("momentum_qp", &FlightProfile::momentum_qp, "solution of the momentum QP")
       .def_readonly("torque", &FlightProfile::torque, "torque QP and rate limiter")

@@ -68,7 +68,7 @@ void bind_reference_settings(py::module_& m) {
       .value("semi_implicit_euler", Integrator::kSemiImplicitEuler)
       .value("runge_kutta_4", Integrator::kRungeKutta4, "fourth order on the Lie group");
 
-  py::class_<ContactPoint> contact(m, "ContactPoint", "A point whose height is watched.");
+  py::class_<ContactPoint> contact(m, "ContactPoint", "A point monitored for ground contact.");
   bind_keywords(contact);
   contact.def_readwrite("frame", &ContactPoint::frame)
       .def_readwrite("position", &ContactPoint::position, "(3,) in the frame [m]");
@@ -126,7 +126,7 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("joint_velocity", &Weights::joint_velocity)
       .def_readwrite("thrust_rate", &Weights::thrust_rate)
       .def_readwrite("thrust_symmetry", &Weights::thrust_symmetry)
-      .def_readwrite("regularisation", &Weights::regularisation)
+      .def_readwrite("regularization", &Weights::regularization)
       .def_readwrite("torque", &Weights::torque);
 
   py::class_<Limits> limits(m, "Limits", "Ranges of joints, thrusts and torques.");
@@ -169,7 +169,7 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("c", &Turbine::c)
       .def_readwrite("throttle_max", &Turbine::throttle_max, "[%]")
       .def_readwrite("rate_gain", &Turbine::rate_gain,
-                     "of the feedback linearisation that follows a thrust rate [1/s]");
+                     "of the feedback linearization that follows a thrust rate [1/s]");
 
   py::class_<RateIntegrator> integrator(m, "RateIntegrator", "Thrust follows the commanded rate.");
   bind_keywords(integrator);

@@ -29,7 +29,7 @@ void bind_size_field(py::module_& m) {
 Args:
     points: (k, 3) m; one row is a point.
     size: edge length within `radius` of the polyline [m].
-    growth: increase of the edge length per metre of distance beyond `radius`.
+    growth: increase of the edge length per meter of distance beyond `radius`.
     radius: m.)")
       .def(py::init<Points, double, double, double>(), "points"_a, "size"_a, "growth"_a = 0.5,
            "radius"_a = 0.0)
@@ -39,7 +39,7 @@ Args:
       .def_readonly("radius", &SizeSource::radius);
   py::class_<SizeField>(m, "SizeField", R"(Edge length wanted at each point.
 
-min(base, size + growth * max(0, distance - radius)) over all sources; metres.)")
+min(base, size + growth * max(0, distance - radius)) over all sources; meters.)")
       .def(py::init([](double base, std::vector<SizeSource> sources) {
              SizeField field{base, std::move(sources)};
              check_size_field(field);

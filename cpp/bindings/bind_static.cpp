@@ -182,7 +182,7 @@ void bind_result(py::module_& m) {
            "StaticResult of one instant, factors (units,).")
       .def("stress_at", &UnitResponses::stress_at, "node"_a, "history"_a,
            "(instants, 6) recovered stress at a node, Pa: xx yy zz xy yz zx");
-  py::class_<StaticSystem>(m, "StaticSystem", "A model factorised once for many load cases.")
+  py::class_<StaticSystem>(m, "StaticSystem", "A model factorized once for many load cases.")
       .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings>(), "mesh"_a,
            "material"_a, "supports"_a, "settings"_a, py::call_guard<py::gil_scoped_release>())
       .def("solve", &StaticSystem::solve, "loads"_a, py::call_guard<py::gil_scoped_release>())

@@ -59,7 +59,7 @@ void check_solid(const SurfaceMesh& surface) {
   check_one_body(surface, find_patches(surface, MeshOptions{}.feature_angle));
 }
 
-SurfaceMesh labelled_by_angle(SurfaceMesh surface, double feature_angle_deg) {
+SurfaceMesh labeled_by_angle(SurfaceMesh surface, double feature_angle_deg) {
   label_by_angle(surface, feature_angle_deg * kDegree);
   return surface;
 }
@@ -76,7 +76,7 @@ double largest_distance(const SurfaceMesh& surface, const SurfaceMesh& other) {
 }
 
 void bind_surface_mesh(py::module_& m) {
-  py::class_<SurfaceMesh>(m, "SurfaceMesh", R"(Triangles that belong to named faces, in metres.
+  py::class_<SurfaceMesh>(m, "SurfaceMesh", R"(Triangles that belong to named faces, in meters.
 
 Args:
     points: (n, 3) m.
@@ -105,7 +105,7 @@ Raises:
         return read_stl(file.string(), scale);
       },
       "path"_a, "scale"_a = 1.0, py::call_guard<py::gil_scoped_release>(),
-      R"(The triangles of an STL file as they are, in metres, under one unnamed face: not checked.
+      R"(The triangles of an STL file as they are, in meters, under one unnamed face: not checked.
 
 Raises:
     MeshError: unreadable, truncated, another format, not finite, empty, huge.)");
@@ -116,7 +116,7 @@ Raises:
     MeshError: open, inside-out, not manifold, crossing itself, several bodies; the message says
         what, where and why.)");
   m.def(
-      "label_by_angle", &labelled_by_angle, "surface"_a, "feature_angle_deg"_a = 40.0,
+      "label_by_angle", &labeled_by_angle, "surface"_a, "feature_angle_deg"_a = 40.0,
       py::call_guard<py::gil_scoped_release>(),
       "The surface with one unnamed face for each piece bounded by edges sharper than the angle.");
   m.def("largest_distance", &largest_distance, "surface"_a, "other"_a,
@@ -124,11 +124,11 @@ Raises:
         "Largest distance of a point of one surface from the triangles of another. [m]");
   m.def("load_surface", &load_surface, "path"_a, "scale"_a = 1.0, py::kw_only(),
         "feature_angle_deg"_a = 40.0, py::call_guard<py::gil_scoped_release>(),
-        R"(Closed surface of an STL file, binary or ASCII, in metres.
+        R"(Closed surface of an STL file, binary or ASCII, in meters.
 
 Args:
     path: the file.
-    scale: metres per unit of the file; 1e-3 for millimetres.
+    scale: meters per unit of the file; 1e-3 for millimeters.
     feature_angle_deg: edges sharper than this bound the (unnamed) faces.
 
 Raises:
@@ -175,15 +175,15 @@ Source: Vlachos et al., Curved PN Triangles, I3D 2001, with normals fitted to th
 }
 
 void bind_mass_properties(py::module_& m) {
-  py::class_<MassProperties>(m, "MassProperties", "Mass, centre of mass and inertia of a solid.")
+  py::class_<MassProperties>(m, "MassProperties", "Mass, center of mass and inertia of a solid.")
       .def_readonly("volume", &MassProperties::volume, "m³")
       .def_readonly("mass", &MassProperties::mass, "kg")
       .def_readonly("com", &MassProperties::com, "(3,) m, axes of the surface")
       .def_readonly("inertia", &MassProperties::inertia,
-                    "(3, 3) kg m² about the centre of mass, axes of the surface");
+                    "(3, 3) kg m² about the center of mass, axes of the surface");
   m.def("mass_properties", &mass_properties, "surface"_a, "density"_a,
         py::call_guard<py::gil_scoped_release>(),
-        R"(Mass, centre of mass and inertia of the polyhedron inside a closed surface.
+        R"(Mass, center of mass and inertia of the polyhedron inside a closed surface.
 
 Args:
     surface: closed and outward-oriented.

@@ -21,7 +21,7 @@ DesignResult evaluate(const std::vector<fem::PartCase>& parts, const std::string
                       const dynamics::FlightSettings& flight) {
   DesignResult result;
   Clock::time_point start = Clock::now();
-  for (const fem::PartCase& part : parts) result.parts.push_back(fem::analyse_part(part));
+  for (const fem::PartCase& part : parts) result.parts.push_back(fem::analyze_part(part));
   result.fem_seconds = seconds_since(start);
   start = Clock::now();
   dynamics::UrdfOptions options;

@@ -107,8 +107,8 @@ bool BoxQpSolver::prepare(const Problem& p) {
   return true;
 }
 
-// Puts the minimiser over the free variables, the others on their bounds, into `target`.
-bool BoxQpSolver::minimise_on_free_set(const Problem& p, Eigen::VectorXd& target) {
+// Puts the minimizer over the free variables, the others on their bounds, into `target`.
+bool BoxQpSolver::minimize_on_free_set(const Problem& p, Eigen::VectorXd& target) {
   ++result_.iterations;
   const int n = size();
   free_.clear();
@@ -189,7 +189,7 @@ void BoxQpSolver::refine(const Problem& p) {
 QpStatus BoxQpSolver::exchange_blocks(const Problem& p) {
   int fewest = size() + 1;
   while (true) {
-    if (!minimise_on_free_set(p, result_.x)) return QpStatus::kNotPositiveDefinite;
+    if (!minimize_on_free_set(p, result_.x)) return QpStatus::kNotPositiveDefinite;
     update_gradient(p);
     int violated = 0;
     for (int i = 0; i < size(); ++i) {
@@ -211,7 +211,7 @@ QpStatus BoxQpSolver::exchange_blocks(const Problem& p) {
   }
 }
 
-// From the last point pulled into the box. Each pass minimises on the free set, walks there as far
+// From the last point pulled into the box. Each pass minimizes on the free set, walks there as far
 // as the bounds allow, and takes in the bound that stops it; at a minimum on the free set the bound
 // with the most wrong multiplier is let go.
 QpStatus BoxQpSolver::descend(const Problem& p) {
@@ -225,7 +225,7 @@ QpStatus BoxQpSolver::descend(const Problem& p) {
   const int limit = 50 * (n + 2);
   int released = -1;
   while (result_.iterations < limit) {
-    if (!minimise_on_free_set(p, target_)) return QpStatus::kNotPositiveDefinite;
+    if (!minimize_on_free_set(p, target_)) return QpStatus::kNotPositiveDefinite;
     double length = 1.0;
     const int blocking = step_towards_target(p, length);
     update_gradient(p);

@@ -5,8 +5,8 @@
 
 namespace codesign::dynamics {
 
-// A strictly convex quadratic programme with bounds only:
-//   minimise ½ xᵀHx + gᵀx   subject to   lower ≤ x ≤ upper.
+// A strictly convex quadratic program with bounds only:
+//   minimize ½ xᵀHx + gᵀx   subject to   lower ≤ x ≤ upper.
 // At the solution Hx + g = multipliers, with multipliers ≥ 0 where x = lower, ≤ 0 where x = upper,
 // of either sign where lower = upper, and 0 elsewhere. What it does not do: general constraints,
 // semidefinite Hessians.
@@ -22,7 +22,7 @@ inline constexpr double kQpTolerance = 1e-9;
 
 struct BoxQpResult {
   QpStatus status = QpStatus::kBadData;
-  int iterations = 0;  // changes of the working set plus one: the number of Cholesky factorisations
+  int iterations = 0;  // changes of the working set plus one: the number of Cholesky factorizations
   // Largest violation of the conditions above over i, each divided by
   // √H_ii Σ_j √H_jj |x_j| + |g_i|: dimensionless, and independent of the variables' units.
   double kkt_residual = 0.0;
@@ -36,7 +36,7 @@ struct BoxQpResult {
 // Method: exchange of all violated bounds at once (block principal pivoting: Júdice and Pires,
 // 1994, "A block principal pivoting algorithm for large-scale strictly monotone linear
 // complementarity problems") as long as their number falls, which settles almost every problem in a
-// few Cholesky factorisations; otherwise a primal active-set descent (Nocedal and Wright, Numerical
+// few Cholesky factorizations; otherwise a primal active-set descent (Nocedal and Wright, Numerical
 // Optimization, §16.5), one bound at a time, whose objective falls strictly between changes of the
 // working set, so that it cannot cycle in exact arithmetic; its iterations are bounded as well.
 class BoxQpSolver {
@@ -60,7 +60,7 @@ class BoxQpSolver {
   struct Problem;
 
   bool prepare(const Problem& p);
-  bool minimise_on_free_set(const Problem& p, Eigen::VectorXd& target);
+  bool minimize_on_free_set(const Problem& p, Eigen::VectorXd& target);
   void refine(const Problem& p);
   void update_gradient(const Problem& p);
   double residual() const;
@@ -75,7 +75,7 @@ class BoxQpSolver {
   std::vector<int> free_;           // indices of the free variables, ascending
   Eigen::MatrixXd factor_;          // Cholesky factor of the free block, lower triangle
   Eigen::VectorXd free_solution_;   // right-hand side and solution of the free block
-  Eigen::VectorXd target_;          // minimiser on the current free set, all variables
+  Eigen::VectorXd target_;          // minimizer on the current free set, all variables
   Eigen::VectorXd gradient_;        // Hx + g
   Eigen::VectorXd root_diagonal_;   // √H_ii
   Eigen::VectorXd gradient_scale_;  // what the entries of the gradient are measured against

@@ -115,7 +115,7 @@ struct Polytope {
   }
 
   // Replaces the facets that see the new vertex by a fan from it to the edge of what it sees,
-  // found by walking from one such facet to its neighbours: round-off cannot tear the surface.
+  // found by walking from one such facet to its neighbors: round-off cannot tear the surface.
   // False, and nothing done, if that edge is not one closed loop.
   bool add_vertex(const Vector3d& vertex, std::size_t seen_facet, double tolerance) {
     std::vector<bool> seen(facets.size(), false);

@@ -5,7 +5,7 @@
 
 // Dense kernels for the small symmetric matrices of one control step (orders 6 to 30), on raw
 // column-major storage: column j starts at a + j·stride; of symmetric matrices only the lower
-// triangle is read and written. Plain loops over contiguous columns, which the compiler vectorises
+// triangle is read and written. Plain loops over contiguous columns, which the compiler vectorizes
 // without reordering a sum; at these sizes they beat a general library call.
 namespace codesign::dynamics {
 

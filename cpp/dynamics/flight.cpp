@@ -294,7 +294,7 @@ FlightLog Flight::run() {
   return std::move(log_);
 }
 
-void summarise(const Model& model, const FlightSettings& settings, FlightLog& log) {
+void summarize(const Model& model, const FlightSettings& settings, FlightLog& log) {
   if (log.samples == 0) return;
   log.min_thrust = log.thrust.minCoeff();
   log.max_thrust = log.thrust.maxCoeff();
@@ -321,7 +321,7 @@ FlightLog simulate_flight(const Model& model, const FlightSettings& settings) {
   require_fit(model, settings);
   FlightLog log = Flight(model, settings).run();
   if (log.samples < log.time.rows()) truncate(log);
-  summarise(model, settings, log);
+  summarize(model, settings, log);
   return log;
 }
 

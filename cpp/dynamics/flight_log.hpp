@@ -18,12 +18,12 @@ enum class FailureReason {
   kTorqueQp,       // the torque QP was not solved
   kSingularMass,   // the mass matrix is singular
   kNotFinite,      // a value is not finite
-  kComError,       // the centre of mass is too far from its reference
+  kComError,       // the center of mass is too far from its reference
   kAttitudeError,  // the base is turned too far from its reference
   kJointSpeed,     // a joint is too fast
 };
 
-// One family of objectives; all are to be minimised.
+// One family of objectives; all are to be minimized.
 struct FlightObjectives {
   double momentum = 0.0;
   double joint_velocity = 0.0;
@@ -41,7 +41,7 @@ struct ObjectiveParts {
 // Wall time of a flight by phase of the step [s].
 struct FlightProfile {
   double plant = 0.0;        // integration, jets
-  double terms = 0.0;        // kinematics, inertias, mass matrix and its factorisation, Jacobians
+  double terms = 0.0;        // kinematics, inertias, mass matrix and its factorization, Jacobians
   double task = 0.0;         // references, building of the momentum QP
   double momentum_qp = 0.0;  // its solution
   double torque = 0.0;       // torque QP and rate limiter
@@ -67,7 +67,7 @@ struct FlightLog {
   History com_velocity_reference;      // (N, 3)
   History rotation_reference;          // (N, 9)
   History angular_velocity_reference;  // (N, 3) base axes
-  History momentum;                    // (N, 6) linear, angular about the centre of mass
+  History momentum;                    // (N, 6) linear, angular about the center of mass
   History momentum_error;              // (N, 6) E_l, E_w
   History thrust;                      // (N, jets)
   History thrust_rate_command;         // (N, jets)
@@ -76,7 +76,7 @@ struct FlightLog {
   History torque;                      // (N, joints)
   History wind;                        // (N, 3) force on the base's origin
   History clearance;                   // (N, 1) lowest contact point above the ground
-  IntHistory qp_iterations;            // (N, 2) factorisations of the momentum and the torque QP
+  IntHistory qp_iterations;            // (N, 2) factorizations of the momentum and the torque QP
   IntHistory active_bounds;            // (N, 1) of the momentum QP
 
   // Summary over the logged samples.
@@ -88,8 +88,8 @@ struct FlightLog {
   long total_qp_iterations = 0;
   FlightProfile profile;
 
-  // Families of spec §11: rms (SI, independent of the step), script (as the authors' program
-  // computes it), paper (as printed).
+  // Objective families (docs/flight.md): rms (SI, independent of the step), script (as the authors'
+  // program computes it), paper (as printed).
   FlightObjectives rms, script, paper;
   ObjectiveParts rms_parts, script_parts;
 };

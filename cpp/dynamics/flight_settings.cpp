@@ -136,7 +136,7 @@ void validate_control(const FlightSettings& s) {
   require_not_negative("weights.joint_velocity", s.weights.joint_velocity);
   require_not_negative("weights.thrust_rate", s.weights.thrust_rate);
   require_not_negative("weights.thrust_symmetry", s.weights.thrust_symmetry);
-  require_positive("weights.regularisation", s.weights.regularisation);
+  require_positive("weights.regularization", s.weights.regularization);
   require_positive("weights.torque", s.weights.torque);
   require_positive("limits.joint_speed", s.limits.joint_speed);
   require_positive("limits.joint_slope", s.limits.joint_slope);

@@ -14,7 +14,7 @@ namespace codesign::dynamics {
 // SI units; vectors over joints have the order of FlightSettings::joints, vectors over jets that of
 // FlightSettings::actuators. The default numbers are those of a humanoid with four jets of 250 N.
 
-// A point of a body whose height is watched, for example a corner of a sole.
+// A point of a body that is monitored for ground contact, for example a corner of a sole.
 struct ContactPoint {
   std::string frame;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // in the frame [m]
@@ -63,7 +63,7 @@ struct Weights {
   double joint_velocity = 10.0;
   double thrust_rate = 0.01;
   double thrust_symmetry = 0.1;
-  double regularisation = 1e-4;
+  double regularization = 1e-4;
   double torque = 1.1e-3;
 };
 

@@ -14,7 +14,7 @@ struct Turbine {
   double B_U = 0.0, B_T = 0.0, B_D = 0.0, B_UU = 0.0;
   double c = 0.0;
   double throttle_max = 120.0;  // [%]; the least is 0
-  double rate_gain = 50.0;      // of the feedback linearisation that follows a thrust rate [1/s]
+  double rate_gain = 50.0;      // of the feedback linearization that follows a thrust rate [1/s]
 };
 
 struct ThrustState {
@@ -30,7 +30,7 @@ double turbine_gain(const Turbine& turbine, const ThrustState& state);
 ThrustState advance(const Turbine& turbine, const ThrustState& state, double throttle, double step);
 
 // Throttle that makes T̈ = −rate_gain (Ṫ − wanted_rate), as far as its range allows (feedback
-// linearisation).
+// linearization).
 double throttle_for_rate(const Turbine& turbine, const ThrustState& state, double wanted_rate);
 
 }  // namespace codesign::dynamics

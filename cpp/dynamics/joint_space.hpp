@@ -8,9 +8,9 @@
 namespace codesign::dynamics {
 
 // Equations of motion M ν̇ = (0; τ) + f of a floating base with its six base accelerations
-// eliminated:  M̂ s̈ = τ + f̂,  M̂ = M_ss − M_sb M_bb⁻¹ M_bs,  f̂ = f_s − M_sb M_bb⁻¹ f_b.
-// M̂⁻¹ is the joint block of M⁻¹. Where M̂ is indefinite (robots with unphysical inertias), it is
-// factored with pivoting. Nothing allocates but the constructor.
+// eliminated, by the Schur complement of the base's block:  M̂ s̈ = τ + f̂,  M̂ = M_ss − M_sb M_bb⁻¹
+// M_bs,  f̂ = f_s − M_sb M_bb⁻¹ f_b. M̂⁻¹ is the joint block of M⁻¹. Where M̂ is indefinite (robots
+// with unphysical inertias), it is factored with pivoting. Nothing allocates but the constructor.
 class JointSpace {
  public:
   explicit JointSpace(int joints);

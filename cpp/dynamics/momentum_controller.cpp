@@ -146,8 +146,8 @@ void build_momentum_qp(const FlightSettings& settings, const ControllerOrigin& o
   const int stride = static_cast<int>(qp.H.outerStride());
 
   qp.H.setZero();
-  qp.H.diagonal().head(jets).setConstant(w.thrust_rate + w.regularisation);
-  qp.H.diagonal().tail(joints).setConstant(w.posture + w.joint_velocity + w.regularisation);
+  qp.H.diagonal().head(jets).setConstant(w.thrust_rate + w.regularization);
+  qp.H.diagonal().tail(joints).setConstant(w.posture + w.joint_velocity + w.regularization);
   for (const auto& [a, b] : settings.symmetry_pairs) {
     qp.H(a, a) += w.thrust_symmetry;
     qp.H(b, b) += w.thrust_symmetry;

@@ -86,7 +86,7 @@ bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const Plan
   return true;
 }
 
-// Classical Runge-Kutta in the coordinates displace() uses, centred on the state at the step's
+// Classical Runge-Kutta in the coordinates displace() uses, centered on the state at the step's
 // start; nu_dot_ holds the acceleration there.
 bool Plant::runge_kutta(const PlantInputs& inputs, RobotState& state) {
   constexpr double kNode[4] = {0.0, 0.5, 0.5, 1.0};

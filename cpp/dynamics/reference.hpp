@@ -7,7 +7,7 @@
 
 namespace codesign::dynamics {
 
-// What the controller tracks at one sample: centre of mass with three derivatives in world axes,
+// What the controller tracks at one sample: center of mass with three derivatives in world axes,
 // rotation of the base, its angular velocity with two derivatives in base axes.
 struct Reference {
   Eigen::Vector3d position, velocity, acceleration, jerk;
@@ -23,11 +23,11 @@ struct Command {
 // Command at sample `index` (time = index · step): windows are open intervals, later ones win.
 Command command_at(const std::vector<CommandWindow>& trajectory, int index, double step);
 
-// Integrates commands into a raw path, then smooths it: minimum-jerk filters for the centre of
+// Integrates commands into a raw path, then smooths it: minimum-jerk filters for the center of
 // mass, a first-order follower on SO(3) and a filter of its angular velocity for the rotation.
 class ReferenceGenerator {
  public:
-  // Starts at rest at this centre of mass and base rotation.
+  // Starts at rest at this center of mass and base rotation.
   ReferenceGenerator(const FlightSettings& settings, const Eigen::Vector3d& com,
                      const Eigen::Matrix3d& base_rotation);
 

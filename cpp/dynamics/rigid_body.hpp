@@ -17,14 +17,14 @@ struct ForceData {
     Eigen::Vector3d linear, angular;  // the part linear in ν̇ [m/s²], [rad/s²]
   };
   struct Wrench {
-    Eigen::Vector3d force, moment;  // on the body and all that hangs on it [N], [N m]
+    Eigen::Vector3d force, moment;  // on the body with its subtree [N], [N m]
   };
   std::vector<Acceleration> accelerations;
   std::vector<Wrench> bodies;
 };
 
 // M (dofs, dofs), symmetric, both triangles written. Composite rigid bodies (Featherstone, "Rigid
-// Body Dynamics Algorithms", ch. 6), about each subtree's centre of mass.
+// Body Dynamics Algorithms", ch. 6), about each subtree's center of mass.
 void mass_matrix(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
                  Eigen::Ref<Eigen::MatrixXd> M);
 

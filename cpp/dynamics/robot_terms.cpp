@@ -75,7 +75,7 @@ void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A) {
 
 void jet_map_rate(const Model& model, const RobotTerms& terms,
                   const Eigen::Ref<const Eigen::VectorXd>& thrusts, Eigen::Ref<Matrix6Xd> Lambda) {
-  // Every jet's arm shortens with the velocity of the centre of mass: −Σ Tᵢ S(aᵢ)(−J_c).
+  // Every jet's arm shortens with the velocity of the center of mass: −Σ Tᵢ S(aᵢ)(−J_c).
   Vector3d total = Vector3d::Zero();
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
     total += thrusts[static_cast<Eigen::Index>(i)] * terms.jets[i].axis;

@@ -26,7 +26,7 @@ struct MountedActuator {
   double reaction = 0.0;                                 // moment about the axis per thrust [m]
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();        // unit vector along which thrust pushes
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();      // from the base origin [m]
-  Eigen::Vector3d arm = Eigen::Vector3d::Zero();         // from the centre of mass [m]
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();         // from the center of mass [m]
 };
 
 // All that a control step needs to know of the robot at one state. Allocated once; written by
@@ -41,7 +41,7 @@ struct RobotTerms {
   Eigen::MatrixXd mass_matrix;  // M (6+n, 6+n)
   Eigen::VectorXd bias;         // b (6+n,)
   Matrix6Xd momentum_matrix;    // C (6, 6+n)
-  Vector6d momentum;            // (l; w) about the centre of mass
+  Vector6d momentum;            // (l; w) about the center of mass
   Eigen::Vector3d com;          // in the world [m]
   std::vector<MountedActuator> jets;
 };

@@ -40,7 +40,7 @@ struct Pose {
 Pose operator*(const Pose& a_T_b, const Pose& b_T_c);
 Pose inverse(const Pose& a_T_b);
 
-// Mass [kg], centre of mass [m] and inertia about the centre of mass [kg m²], in one frame's axes.
+// Mass [kg], center of mass [m] and inertia about the center of mass [kg m²], in one frame's axes.
 struct RigidInertia {
   double mass = 0.0;
   Eigen::Vector3d com = Eigen::Vector3d::Zero();

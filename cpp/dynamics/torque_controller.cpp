@@ -22,7 +22,7 @@ TorqueController::TorqueController(const FlightSettings& settings)
   upper_.setConstant(n, limit_);
 }
 
-// Minimise ½|W τ + s̈₀ − s̈*|² + ½ε|τ|² with W = M̂⁻¹ and s̈₀ = W f̂. Multiplied by M̂², the normal
+// Minimize ½|W τ + s̈₀ − s̈*|² + ½ε|τ|² with W = M̂⁻¹ and s̈₀ = W f̂. Multiplied by M̂², the normal
 // equations (W² + εI) τ = W (s̈* − s̈₀) become (I + ε M̂²) τ = M̂ s̈* − f̂: no inverse, and a condition
 // number close to one, also where M̂ is nearly singular or indefinite.
 QpStatus TorqueController::update(const JointSpace& joint_space,

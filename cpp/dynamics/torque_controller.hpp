@@ -9,7 +9,7 @@
 namespace codesign::dynamics {
 
 // Joint torques that make the joint velocities follow their commands: a PI law for the joint
-// accelerations, the torques by regularised least squares within their limits, then a rate limiter.
+// accelerations, the torques by regularized least squares within their limits, then a rate limiter.
 class TorqueController {
  public:
   explicit TorqueController(const FlightSettings& settings);
@@ -21,7 +21,7 @@ class TorqueController {
                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity);
 
   const Eigen::VectorXd& torque() const { return torque_; }  // of the last update (n,) [Nm]
-  int iterations() const { return iterations_; }             // factorisations of the last update
+  int iterations() const { return iterations_; }             // factorizations of the last update
 
  private:
   QpStatus solve_within_limits(const JointSpace& joint_space);

@@ -30,7 +30,7 @@ constexpr double kTriangleTolerance = 0.02;
 constexpr double kRounding = 1e-9;        // of the largest moment
 constexpr double kSmallestMass = 1e-9;    // [kg] of a moving body
 constexpr double kSmallestRadius = 1e-6;  // [m] of gyration of a moving body
-constexpr double kSmallestAxis = 1e-3;    // norm before it is normalised
+constexpr double kSmallestAxis = 1e-3;    // norm before it is normalized
 
 std::string in_quotes(std::string name) {
   constexpr std::size_t kLongest = 120;
@@ -122,7 +122,7 @@ double smallest_moment(const RigidInertia& body) {
   return kSmallestRadius * kSmallestRadius * body.mass;
 }
 
-// What one <inertial> must fulfil. Point masses and thin rods pass.
+// What one <inertial> must fulfill. Point masses and thin rods pass.
 void check_link_inertia(const RigidInertia& link, const std::string& name, bool as_published) {
   if (link.mass < 0.0) {
     throw UrdfError("link " + in_quotes(name) + ": negative mass " + number(link.mass) + " kg");
@@ -145,7 +145,8 @@ void check_link_inertia(const RigidInertia& link, const std::string& name, bool 
   }
 }
 
-// What a moving body, lumped from its links, must fulfil for the equations of motion to be regular.
+// What a moving body, lumped from its links, must fulfill for the equations of motion to be
+// regular.
 void check_moving_body(const Body& body, bool as_published) {
   if (body.inertia.mass < kSmallestMass) {
     throw UrdfError("link " + in_quotes(body.name) +

@@ -12,8 +12,8 @@ struct UrdfOptions {
   // Names of the joints that move, in the wanted order; all others are locked at position 0 and
   // their links lumped. Absent: every joint that is not fixed, in the order of the URDF text.
   std::optional<std::vector<std::string>> joints = std::nullopt;
-  // Accept inertia tensors that no body can have (spec of the published iRonCub robots); nothing
-  // else is waived.
+  // Accept inertia tensors that no body can have (the published iRonCub robots hold some);
+  // nothing else is waived.
   bool as_published = false;
   // The root link does not move.
   bool fixed_base = false;

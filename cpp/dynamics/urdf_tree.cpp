@@ -37,7 +37,7 @@ class Tree {
     }
     std::set<std::string> reached = {root};
     for (const std::string& start : text_.links) {
-      // Up to what is known to hang on the root; a walk longer than the robot is a loop.
+      // Up to what is known to be connected to the root; a walk longer than the robot is a loop.
       std::vector<std::string> walk;
       std::string link = start;
       while (!reached.contains(link)) {

@@ -181,7 +181,7 @@ SizeField refine_around(const SizeField& size, const Eigen::Vector3d& point) {
   return refined;
 }
 
-PartAnalysis analyse_part(const PartCase& part) {
+PartAnalysis analyze_part(const PartCase& part) {
   if (!(part.tolerance > 0)) throw std::invalid_argument("tolerance must be > 0");
   if (part.cases.empty()) throw std::invalid_argument("cases: a part needs a load case");
   for (const LoadCase& load_case : part.cases) {

@@ -63,14 +63,14 @@ struct PartAnalysis {
   double change = 0.0;     // of the peak stress by the last refinement, relative
   std::string stopped;     // why refining ended without convergence; empty otherwise
   double mesh_seconds = 0.0;   // wall clock, all passes
-  double solve_seconds = 0.0;  // order, assemble, factorise, solve, recover; all passes
+  double solve_seconds = 0.0;  // order, assemble, factorize, solve, recover; all passes
 };
 
 // Surface to safety factor. With refinements allowed, elements around the peak are halved at least
 // once, until estimated error and change are within the tolerance; the mesher's time limit covers
 // all passes. Throws MeshError, SolverError (MemoryLimitError, for want of memory too),
 // std::invalid_argument (unknown face); if only a refined pass fails, the last result stands.
-PartAnalysis analyse_part(const PartCase& part);
+PartAnalysis analyze_part(const PartCase& part);
 
 // The size field with half the edge length around a point.
 SizeField refine_around(const SizeField& size, const Eigen::Vector3d& point);

@@ -101,7 +101,7 @@ struct LoadAdder {
     require_finite(load.force.allFinite(), "body force");
     const bool uniform = load.force.rows() == 1;
     if (!uniform && load.force.rows() != mesh.nodes.rows()) {
-      throw std::invalid_argument("a body force has one row, or one row a node");
+      throw std::invalid_argument("a body force has one row, or one row per node");
     }
     const TetRule& rule = tet_rule_14();
     TetPoints points;

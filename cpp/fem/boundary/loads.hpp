@@ -57,7 +57,7 @@ struct Acceleration {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
 };
 
-// Force per volume (N/m³): one row, or one row a node, interpolated by the shape functions.
+// Force per volume (N/m³): one row, or one row per node, interpolated by the shape functions.
 struct BodyForce {
   Points force;
 };

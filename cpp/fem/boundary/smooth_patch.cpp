@@ -41,7 +41,7 @@ class Grower {
       : surface_(surface),
         max_bend_(max_bend),
         extent_(extent(surface.points)),
-        neighbours_(triangle_neighbours(surface.triangles)),
+        neighbors_(triangle_neighbors(surface.triangles)),
         normal_(surface.triangles.rows(), 3),
         area_(surface.triangles.rows()) {
     for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
@@ -93,7 +93,7 @@ class Grower {
     std::vector<Eigen::Vector3d> sides;
     for (const int t : flood(start, [&](int i) { return group_[at(i)] == own; })) {
       for (int k = 0; k < 3; ++k) {
-        const int other = neighbours_[at(t)][at(k)];
+        const int other = neighbors_[at(t)][at(k)];
         if (!joined(t, other) || group_[at(other)] == own) continue;
         const Eigen::Vector3d side = corner(surface_, t, (k + 1) % 3) - corner(surface_, t, k);
         const double width = group_area_[at(own)] / std::max(side.norm(), 1e-300);
@@ -131,10 +131,10 @@ class Grower {
   std::vector<int> flood(int start, Accepted accepted) const {
     if (!accepted(start)) return {};
     std::vector<int> queue{start};
-    std::vector<char> seen(neighbours_.size(), 0);
+    std::vector<char> seen(neighbors_.size(), 0);
     seen[at(start)] = 1;
     for (std::size_t i = 0; i < queue.size(); ++i) {
-      for (const int other : neighbours_[at(queue[i])]) {
+      for (const int other : neighbors_[at(queue[i])]) {
         if (!joined(queue[i], other) || seen[at(other)] || !accepted(other)) continue;
         seen[at(other)] = 1;
         queue.push_back(other);
@@ -144,12 +144,12 @@ class Grower {
     return queue;
   }
 
-  // Groups of coplanar neighbours; a group stands out as a plane if it is larger than half of the
+  // Groups of coplanar neighbors; a group stands out as a plane if it is larger than half of the
   // groups that it is smoothly joined to.
   void set_groups() {
-    group_.assign(neighbours_.size(), -1);
+    group_.assign(neighbors_.size(), -1);
     std::vector<double> areas;
-    for (int first = 0; first < static_cast<int>(neighbours_.size()); ++first) {
+    for (int first = 0; first < static_cast<int>(neighbors_.size()); ++first) {
       if (group_[at(first)] >= 0) continue;
       const int number = static_cast<int>(areas.size());
       std::vector<int> queue{first};
@@ -159,7 +159,7 @@ class Grower {
       for (std::size_t i = 0; i < queue.size(); ++i) {
         areas.back() += area_[queue[i]];
         group_centroid_.back() += area_[queue[i]] * centroid(queue[i]);
-        for (const int other : neighbours_[at(queue[i])]) {
+        for (const int other : neighbors_[at(queue[i])]) {
           if (!joined(queue[i], other) || group_[at(other)] >= 0) continue;
           if (bend(first, other) > kGroupBend) continue;
           group_[at(other)] = number;
@@ -170,8 +170,8 @@ class Grower {
     for (std::size_t g = 0; g < areas.size(); ++g) group_centroid_[g] /= std::max(areas[g], 1e-300);
     group_area_ = areas;
     std::vector<std::set<int>> beside(areas.size());
-    for (int t = 0; t < static_cast<int>(neighbours_.size()); ++t) {
-      for (const int other : neighbours_[at(t)]) {
+    for (int t = 0; t < static_cast<int>(neighbors_.size()); ++t) {
+      for (const int other : neighbors_[at(t)]) {
         if (joined(t, other)) beside[at(group_[at(t)])].insert(group_[at(other)]);
       }
     }
@@ -189,7 +189,7 @@ class Grower {
     std::set<int> own, beside;
     for (const int t : triangles) own.insert(group_[at(t)]);
     for (const int t : triangles) {
-      for (const int other : neighbours_[at(t)]) {
+      for (const int other : neighbors_[at(t)]) {
         if (joined(t, other) && !own.count(group_[at(other)])) beside.insert(group_[at(other)]);
       }
     }
@@ -238,7 +238,7 @@ class Grower {
     const int own = group_[at(start)];
     double smallest = max_bend_;
     for (const int t : flood(start, [&](int i) { return group_[at(i)] == own; })) {
-      for (const int other : neighbours_[at(t)]) {
+      for (const int other : neighbors_[at(t)]) {
         if (!joined(t, other) || group_[at(other)] == own) continue;
         if (group_area_[at(group_[at(other)])] <= 4.0 * flat_area) {
           smallest = std::min(smallest, bend(t, other));
@@ -267,7 +267,7 @@ class Grower {
   double largest_bend(const std::vector<int>& triangles) const {
     double largest = 0.0;
     for (const int t : triangles) {
-      for (const int other : neighbours_[at(t)]) {
+      for (const int other : neighbors_[at(t)]) {
         if (joined(t, other) && std::binary_search(triangles.begin(), triangles.end(), other)) {
           largest = std::max(largest, bend(t, other));
         }
@@ -303,7 +303,7 @@ class Grower {
 
   const SurfaceMesh& surface_;
   double max_bend_, extent_;
-  Neighbours neighbours_;
+  Neighbors neighbors_;
   Points normal_;
   Eigen::VectorXd area_;
   std::vector<int> group_;

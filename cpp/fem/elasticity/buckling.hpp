@@ -15,8 +15,9 @@
 
 namespace codesign::fem {
 
-// Linear buckling, (K + factor K_sigma) x = 0: K_sigma is the geometric stiffness of the stress
-// under the load, which keeps its direction and grows in proportion.
+// Linear buckling, (K + factor K_sigma) x = 0: K_sigma, with the blocks ∫ ∇N_a·σ·∇N_b dV I, is the
+// geometric stiffness of the stress σ under the load, which keeps its direction and grows in
+// proportion.
 //
 // K⁻¹ K_sigma is no compact operator: its eigenvalues of about stress / shear modulus are a
 // continuum (short waves, like wrinkles of a compressed surface, drawn to singular stresses) of

@@ -23,7 +23,7 @@ namespace {
 constexpr int kMaxRefinements = 3;
 constexpr double kGradientTolerance = 1e-11;  // of conjugate gradients, see there
 constexpr int kMaxIterations = 500;
-// Multiply-adds of a factorisation that takes as long as conjugate gradients on the same part.
+// Multiply-adds of a factorization that takes as long as conjugate gradients on the same part.
 constexpr double kDirectOperations = 1.5e10;
 
 void check_mesh(const TetMesh& mesh) {

@@ -20,7 +20,7 @@
 //   div sigma(u) + b = 0 in the part,   sigma = lambda tr(e) I + 2 mu e,  e = sym grad u
 //   components of u given on supports,  sigma n = t on loaded faces
 //
-// by quadratic tetrahedra: order, assemble, factorise, solve, check the residual, recover stress.
+// by quadratic tetrahedra: order, assemble, factorize, solve, check the residual, recover stress.
 namespace codesign::fem {
 
 // automatic: direct unless stiffness and factor are larger than the memory limit or the factor
@@ -83,7 +83,7 @@ struct StaticResult {
 
 class UnitResponses;
 
-// A model ordered, assembled and factorised once, for any number of load cases.
+// A model ordered, assembled and factorized once, for any number of load cases.
 class StaticSystem {
  public:
   // Throws SolverError naming the free rigid motions if the supports do not hold the part,

@@ -13,7 +13,7 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// Fills the structure of a; returns for each neighbour of the pattern the first row of its block in
+// Fills the structure of a; returns for each neighbor of the pattern the first row of its block in
 // the columns of the position, counted after the diagonal block.
 std::vector<int> fill_structure(const NodePattern& pattern, LowerMatrix& a) {
   const int n = pattern.equations();
@@ -44,7 +44,7 @@ std::vector<int> fill_structure(const NodePattern& pattern, LowerMatrix& a) {
   return offset;
 }
 
-// Elements by their first eliminated node: neighbours in this sequence write to the same columns.
+// Elements by their first eliminated node: neighbors in this sequence write to the same columns.
 std::vector<int> elements_by_column(const TetMesh& mesh, const NodePattern& pattern) {
   const std::size_t count = at(static_cast<int>(mesh.tets.rows()));
   std::vector<int> first(count), start(at(pattern.positions()) + 2, 0), sequence(count);

@@ -9,7 +9,7 @@
 namespace codesign::fem {
 
 // Cholesky factor of a symmetric positive definite matrix whose order is already fill-reducing
-// (CHOLMOD's supernodal factorisation).
+// (CHOLMOD's supernodal factorization).
 class CholeskyFactor {
  public:
   // Throws SolverError if the matrix is not positive definite or memory runs out.

@@ -159,7 +159,7 @@ void find_neighbors(const TetMesh& mesh, const Incidence& elements, NodePattern&
   }
 }
 
-// Positions, neighbours and equations of nodes in their order.
+// Positions, neighbors and equations of nodes in their order.
 void number(const TetMesh& mesh, const Constraints& constraints, NodePattern& pattern) {
   set_positions(at(static_cast<int>(mesh.nodes.rows())), pattern);
   find_neighbors(mesh, elements_of_nodes(mesh, kTetNodes), pattern);

@@ -10,7 +10,7 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-struct Graph {  // neighbours below k of each k, from the given ones above
+struct Graph {  // neighbors below k of each k, from the given ones above
   std::vector<int> start, neighbor;
 };
 

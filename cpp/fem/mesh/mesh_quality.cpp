@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/mesh/tet10.hpp"
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 
 namespace codesign::fem {
 namespace {
@@ -23,7 +23,7 @@ double signed_volume(const TetMesh& mesh, Eigen::Index t) {
 }  // namespace
 
 int count_pieces(const TetMesh& mesh) {
-  return find_pieces(tet_neighbours(mesh.tets.leftCols<4>())).second;
+  return find_pieces(tet_neighbors(mesh.tets.leftCols<4>())).second;
 }
 
 Eigen::Matrix<double, 6, 1> dihedral_angles(const Eigen::Vector3d& a, const Eigen::Vector3d& b,

@@ -70,15 +70,15 @@ void check_mid_nodes(const TetMesh& mesh) {
 }
 
 void find_boundary(TetMesh& mesh) {
-  const TetNeighbours neighbours = tet_neighbours(mesh.tets.leftCols<4>());
+  const TetNeighbors neighbors = tet_neighbors(mesh.tets.leftCols<4>());
   Eigen::Index count = 0;
-  for (const std::array<int, 4>& sides : neighbours)
+  for (const std::array<int, 4>& sides : neighbors)
     count += std::count(sides.begin(), sides.end(), -1);
   mesh.boundary.resize(count, 6);
   Eigen::Index row = 0;
-  for (std::size_t e = 0; e < neighbours.size(); ++e)
+  for (std::size_t e = 0; e < neighbors.size(); ++e)
     for (std::size_t k = 0; k < 4; ++k) {
-      if (neighbours[e][k] >= 0) continue;
+      if (neighbors[e][k] >= 0) continue;
       for (int i = 0; i < 6; ++i)
         mesh.boundary(row, i) = mesh.tets(static_cast<Eigen::Index>(e), kSideNodes[k][i]);
       ++row;

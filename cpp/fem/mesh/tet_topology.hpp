@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fem/mesh/tet_mesh.hpp"
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 
 namespace codesign::fem {
 

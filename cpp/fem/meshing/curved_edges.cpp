@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "fem/mesh/tet10.hpp"
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 #include "fem/meshing/feature_curve.hpp"
 #include "fem/surface/edge_key.hpp"
 
@@ -82,7 +82,7 @@ Vector3d target_of(const BoundaryEdge& edge, const Vector3d& middle, const Curve
   return best;
 }
 
-// Smallest Jacobian determinant at the nodes and the centre, relative to the straight element's.
+// Smallest Jacobian determinant at the nodes and the center, relative to the straight element's.
 double smallest_jacobian(const TetMesh& mesh, int t) {
   static const std::vector<TetGradients> gradients = [] {
     std::vector<Vector3d> places{Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY(),

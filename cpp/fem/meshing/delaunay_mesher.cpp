@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "errors.hpp"
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 #include "fem/meshing/feature_curve.hpp"
 #include "fem/meshing/mesh_watch.hpp"
 #include "fem/surface/solid_oracle.hpp"
@@ -216,7 +216,7 @@ struct SizingField {
 // A few triangles of a shell, far from each other.
 std::vector<int> spread_triangles(const SurfaceMesh& surface, const std::vector<int>& shell,
                                   int which) {
-  const auto centre = [&](int t) -> Vector3d {
+  const auto center = [&](int t) -> Vector3d {
     return (corner(surface, t, 0) + corner(surface, t, 1) + corner(surface, t, 2)) / 3.0;
   };
   std::vector<int> members, chosen;
@@ -225,9 +225,9 @@ std::vector<int> spread_triangles(const SurfaceMesh& surface, const std::vector<
   std::vector<double> distance(members.size(), kInfinity);
   for (std::size_t next = 0; chosen.size() < 12 && distance[next] > 0.0;) {
     chosen.push_back(members[next]);
-    const Vector3d p = centre(members[next]);
+    const Vector3d p = center(members[next]);
     for (std::size_t i = 0; i < members.size(); ++i)
-      distance[i] = std::min(distance[i], (centre(members[i]) - p).squaredNorm());
+      distance[i] = std::min(distance[i], (center(members[i]) - p).squaredNorm());
     next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) -
                                     distance.begin());
   }
@@ -279,12 +279,12 @@ int label_of(const Complex& complex, Complex::Cell_handle cell, int k, const Pat
              const SolidOracle& oracle) {
   if (const int patch = cell->surface_patch_index(k); complex.is_in_complex(cell, k))
     return patch - 1;
-  Vector3d centre = Vector3d::Zero();
+  Vector3d center = Vector3d::Zero();
   for (const int i : kTetSides[k]) {
     const auto& p = cell->vertex(i)->point();
-    centre += Vector3d(p.x(), p.y(), p.z()) / 3.0;
+    center += Vector3d(p.x(), p.y(), p.z()) / 3.0;
   }
-  return patches.of_triangle[static_cast<std::size_t>(oracle.nearest(centre, -1).triangle)];
+  return patches.of_triangle[static_cast<std::size_t>(oracle.nearest(center, -1).triangle)];
 }
 
 // Of all vertices, those of the protecting balls included.

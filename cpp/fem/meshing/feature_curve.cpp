@@ -84,9 +84,9 @@ Vector3d FeatureCurve::point_at(const Vector3d& p, double distance) const {
 namespace {
 
 // Where the line a + s (b - a) is inside a ball: the interval of s, empty as (1, 0).
-std::pair<double, double> inside_ball(const Vector3d& a, const Vector3d& b, const Vector3d& centre,
+std::pair<double, double> inside_ball(const Vector3d& a, const Vector3d& b, const Vector3d& center,
                                       double squared_radius) {
-  const Vector3d d = b - a, m = a - centre;
+  const Vector3d d = b - a, m = a - center;
   const double dd = d.squaredNorm(), md = m.dot(d), c = m.squaredNorm() - squared_radius;
   const double discriminant = md * md - dd * c;
   if (dd == 0.0) return c <= 0.0 ? std::pair{0.0, 1.0} : std::pair{1.0, 0.0};

@@ -8,7 +8,7 @@
 namespace codesign::fem {
 
 // A polyline measured by its arc length, closed if its first and last point are equal. Points on it
-// are given by their coordinates; those that the curve has handed out or is made of are recognised,
+// are given by their coordinates; those that the curve has handed out or is made of are recognized,
 // others are taken to the nearest point.
 class FeatureCurve {
  public:

@@ -14,9 +14,8 @@
 namespace codesign::fem {
 namespace {
 
-TetNeighbours neighbours_of(const LinearTets& mesh) {
-  return tet_neighbours(
-      Eigen::Map<const Tets4>(mesh.tets.data()->data(), std::ssize(mesh.tets), 4));
+TetNeighbors neighbors_of(const LinearTets& mesh) {
+  return tet_neighbors(Eigen::Map<const Tets4>(mesh.tets.data()->data(), std::ssize(mesh.tets), 4));
 }
 
 const Eigen::Vector3d& corner_of(const LinearTets& mesh, std::size_t t, std::size_t k) {
@@ -80,7 +79,7 @@ bool find_flat(const LinearTets& mesh, std::size_t t, double flat_angle, double 
 }  // namespace
 
 int peel_flat_tets(LinearTets& mesh, double flat_angle, double straight_angle) {
-  TetNeighbours neighbours = neighbours_of(mesh);
+  TetNeighbors neighbors = neighbors_of(mesh);
   BoundaryEdges edges;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     for (std::size_t k = 0; k < 4; ++k)
@@ -100,11 +99,11 @@ int peel_flat_tets(LinearTets& mesh, double flat_angle, double straight_angle) {
         const bool inner = k != outside[0] && k != outside[1];
         edges.add(mesh.tets[t], k, inner ? 1 : -1);
         if (!inner) continue;
-        const auto next = static_cast<std::size_t>(neighbours[t][k]);
+        const auto next = static_cast<std::size_t>(neighbors[t][k]);
         const auto back = static_cast<std::size_t>(
-            std::find(neighbours[next].begin(), neighbours[next].end(), static_cast<int>(t)) -
-            neighbours[next].begin());
-        neighbours[next][back] = -1;
+            std::find(neighbors[next].begin(), neighbors[next].end(), static_cast<int>(t)) -
+            neighbors[next].begin());
+        neighbors[next][back] = -1;
         mesh.side_label[next][back] = label;
       }
     }
@@ -114,7 +113,7 @@ int peel_flat_tets(LinearTets& mesh, double flat_angle, double straight_angle) {
 }
 
 int remove_crumbs(LinearTets& mesh, double fraction) {
-  const auto [piece, pieces] = find_pieces(neighbours_of(mesh));
+  const auto [piece, pieces] = find_pieces(neighbors_of(mesh));
   if (pieces <= 1) return 0;
   std::vector<double> volume(static_cast<std::size_t>(pieces), 0.0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {

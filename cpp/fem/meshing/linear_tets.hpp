@@ -9,7 +9,7 @@
 
 namespace codesign::fem {
 
-// Four-node tetrahedra with labelled boundary sides, as they come from the mesher and before mid
+// Four-node tetrahedra with labeled boundary sides, as they come from the mesher and before mid
 // nodes are added.
 struct LinearTets {
   std::vector<Eigen::Vector3d> points;   // m
@@ -26,7 +26,7 @@ struct LinearTets {
 // [rad]
 int peel_flat_tets(LinearTets& mesh, double flat_angle, double straight_angle);
 
-// Removes pieces that hang on the largest one by a point or an edge only and have less than
+// Removes pieces that touch the largest one in a point or an edge only and have less than
 // `fraction` of its volume: the mesher leaves such crumbs of a few elements beside narrow ledges.
 // Larger pieces stay (the caller refuses them). Returns the number of tetrahedra removed.
 int remove_crumbs(LinearTets& mesh, double fraction);

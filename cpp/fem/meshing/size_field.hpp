@@ -13,7 +13,7 @@ namespace codesign::fem {
 struct SizeSource {
   Points points;  // (k, 3) m, k >= 1
   double size;    // edge length within `radius` of the polyline, m
-  double growth;  // increase of the edge length per metre of distance beyond `radius`
+  double growth;  // increase of the edge length per meter of distance beyond `radius`
   double radius;  // m
 };
 

@@ -9,7 +9,7 @@ namespace codesign::fem {
 // length anywhere is the smallest of them all. Points sit in a tree of boxes.
 class SizePoints {
  public:
-  // `points` and `sizes` [m] of equal, positive length; growth: per metre of distance.
+  // `points` and `sizes` [m] of equal, positive length; growth: per meter of distance.
   SizePoints(std::vector<Eigen::Vector3d> points, std::vector<double> sizes, double growth);
 
   // The edge length at p, or `cap` if that is smaller. [m]

@@ -37,10 +37,10 @@ SurfaceMesh curved_boundary(const TetMesh& mesh) {
 
 void add_edges_off_patches(const TetMesh& mesh, const Triangles& triangles,
                            const SolidOracle& oracle, std::vector<Mismatch>& found) {
-  const Neighbours neighbours = triangle_neighbours(triangles);
-  for (std::size_t t = 0; t < neighbours.size(); ++t)
+  const Neighbors neighbors = triangle_neighbors(triangles);
+  for (std::size_t t = 0; t < neighbors.size(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[t][static_cast<std::size_t>(k)];
+      const int other = neighbors[t][static_cast<std::size_t>(k)];
       if (other < static_cast<int>(t)) continue;
       const int p = mesh.boundary_face[t], q = mesh.boundary_face[static_cast<std::size_t>(other)];
       if (p == q) continue;
@@ -66,10 +66,10 @@ void add_non_manifold(const SurfaceMesh& boundary, std::vector<Mismatch>& found)
   const Triangles& triangles = boundary.triangles;
   std::map<int, double> size_at;  // of points that are not manifold
   for (const int i : non_manifold_points(triangles)) size_at[i] = -1.0;
-  const Neighbours neighbours = triangle_neighbours(triangles);
-  for (std::size_t t = 0; t < neighbours.size(); ++t)
+  const Neighbors neighbors = triangle_neighbors(triangles);
+  for (std::size_t t = 0; t < neighbors.size(); ++t)
     for (int k = 0; k < 3; ++k) {
-      if (neighbours[t][static_cast<std::size_t>(k)] >= 0) continue;
+      if (neighbors[t][static_cast<std::size_t>(k)] >= 0) continue;
       const auto row = static_cast<Eigen::Index>(t);
       const double length = (corner(boundary, row, (k + 1) % 3) - corner(boundary, row, k)).norm();
       for (const int i : {triangles(row, k), triangles(row, (k + 1) % 3)})
@@ -90,11 +90,11 @@ void add_non_manifold(const SurfaceMesh& boundary, std::vector<Mismatch>& found)
 void add_sides_across(const SurfaceMesh& boundary, const SurfaceMesh& surface,
                       const SolidOracle& oracle, std::vector<Mismatch>& found) {
   for (Eigen::Index t = 0; t < boundary.triangles.rows(); ++t) {
-    const Vector3d centre =
+    const Vector3d center =
         (corner(boundary, t, 0) + corner(boundary, t, 1) + corner(boundary, t, 2)) / 3.0;
-    const SolidOracle::Hit nearest = oracle.nearest(centre, -1);
+    const SolidOracle::Hit nearest = oracle.nearest(center, -1);
     if (triangle_normal(boundary, t).dot(triangle_normal(surface, nearest.triangle)) < kAcross)
-      found.push_back({centre, (nearest.point - centre).norm()});
+      found.push_back({center, (nearest.point - center).norm()});
   }
 }
 

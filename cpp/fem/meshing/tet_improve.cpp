@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 
 namespace codesign::fem {
 namespace {

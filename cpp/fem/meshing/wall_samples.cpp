@@ -51,18 +51,18 @@ class Sampler {
       const std::array<Vector3d, 3> piece = pieces.back();
       pieces.pop_back();
       const auto [longest, k] = longest_edge(piece);
-      const Vector3d centre = (piece[0] + piece[1] + piece[2]) / 3.0;
+      const Vector3d center = (piece[0] + piece[1] + piece[2]) / 3.0;
       double spacing = limit_, wall = limit_;
       if (longest <= limit_) {
-        wall = thickness(t, centre, -normal);
-        const double gap = thickness(t, centre, normal);
-        if (gap < limit_) samples_.push_back({centre, gap, 0.0});
+        wall = thickness(t, center, -normal);
+        const double gap = thickness(t, center, normal);
+        if (gap < limit_) samples_.push_back({center, gap, 0.0});
         spacing = std::max(kSpacing * std::min(wall, gap), finest_);
       }
       const bool whole = longest <= spacing;
       if (whole || wall < limit_)
         samples_.push_back(
-            {centre, wall,
+            {center, wall,
              whole ? 0.5 * (piece[1] - piece[0]).cross(piece[2] - piece[0]).norm() : 0.0});
       if (whole) continue;
       const Vector3d middle = 0.5 * (piece[k] + piece[(k + 1) % 3]);

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kMeanWalls = 2.5;        // elements across the mean wall
 constexpr double kMeanElements = 30'000;  // of the mean edge length, about
-constexpr double kGrowth = 0.4;           // of the edge length, per metre
+constexpr double kGrowth = 0.4;           // of the edge length, per meter
 constexpr double kSmallest = 1.0 / 20.0;  // edge length, relative to the base
 constexpr double kRaise = 1.25;           // of the smallest edge length while there are too many
 constexpr double kDensity = 4.6;          // elements per cube of the edge length (measured)

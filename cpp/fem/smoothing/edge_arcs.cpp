@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 #include "fem/surface/edge_key.hpp"
 
 namespace codesign::fem {
@@ -25,7 +25,7 @@ constexpr double kNoTurn = 1e-9;     // rad: straight
 constexpr double kClearLine = 0.26;  // sine of the angle of two sides whose intersection is clear
 constexpr double kOfFeature = 0.75;  // of the feature angle: between arc and chord
 constexpr double kLopsided = 0.5;    // of their sum: difference of both ends' angles to the chord
-constexpr double kAlike = 0.5;  // smaller over larger curvature of a border's neighbouring arcs
+constexpr double kAlike = 0.5;       // smaller over larger curvature of a border's neighboring arcs
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -38,8 +38,8 @@ class ArcFinder {
         literal_(literal),
         most_(kOfFeature * feature_angle),
         extent_(extent(surface.points)),
-        neighbours_(triangle_neighbours(surface.triangles)) {
-    for (int t = 0; t < std::ssize(neighbours_); ++t)
+        neighbors_(triangle_neighbors(surface.triangles)) {
+    for (int t = 0; t < std::ssize(neighbors_); ++t)
       for (int k = 0; k < 3; ++k)
         if (is_rim(t, k)) {
           rim_[{region(t), tail(t, k)}].push_back(head(t, k));
@@ -49,9 +49,9 @@ class ArcFinder {
 
   EdgeArcs run() {
     EdgeArcs found;
-    found.of_triangle.resize(neighbours_.size());
+    found.of_triangle.resize(neighbors_.size());
     std::unordered_map<std::uint64_t, int> arc_of;
-    for (int t = 0; t < std::ssize(neighbours_); ++t)
+    for (int t = 0; t < std::ssize(neighbors_); ++t)
       for (int k = 0; k < 3; ++k) {
         const auto [place, fresh] = arc_of.try_emplace(edge_key(tail(t, k), head(t, k)),
                                                        static_cast<int>(found.arcs.size()));
@@ -70,7 +70,7 @@ class ArcFinder {
 
   // Edge of a flat that runs smoothly into a curved face.
   bool is_rim(int t, int k) const {
-    const int other = neighbours_[index(t)][index(k)];
+    const int other = neighbors_[index(t)][index(k)];
     return other >= 0 && !normals_.sharp[index(t)][index(k)] && flat(t) && !flat(other);
   }
 
@@ -84,12 +84,12 @@ class ArcFinder {
   }
 
   int side_of(int t, int other) const {
-    const auto& there = neighbours_[index(other)];
+    const auto& there = neighbors_[index(other)];
     return static_cast<int>(std::find(there.begin(), there.end(), t) - there.begin());
   }
 
   EdgeArc make_arc(int t, int k) const {
-    const int other = neighbours_[index(t)][index(k)];
+    const int other = neighbors_[index(t)][index(k)];
     const int a = tail(t, k), b = head(t, k);
     std::optional<std::pair<Vector3d, Vector3d>> tangents;
     if (other >= 0 && !literal_[index(t)] && !literal_[index(other)]) {
@@ -128,7 +128,7 @@ class ArcFinder {
     return (chord - chord.dot(normal) * normal).normalized();
   }
 
-  // Tangents of the circles through neighbouring points of the border of a flat.
+  // Tangents of the circles through neighboring points of the border of a flat.
   std::optional<std::pair<Vector3d, Vector3d>> rim_tangents(int flat_region, int a, int b) const {
     const auto before = beyond(flat_region, a, b), after = beyond(flat_region, b, a);
     if (!before || !after) return {};
@@ -180,7 +180,7 @@ class ArcFinder {
   const std::vector<bool>& literal_;
   double most_;    // rad, between arc and chord
   double extent_;  // m
-  Neighbours neighbours_;
+  Neighbors neighbors_;
   std::map<std::pair<int, int>, std::vector<int>> rim_;  // (flat, point) -> next points
 };
 

@@ -157,7 +157,7 @@ class Splitter {
 };
 
 // Pieces of one coarse triangle by rounds of halving edges that turn too much. Whether an edge is
-// halved depends on the edge alone, so that neighbours agree.
+// halved depends on the edge alone, so that neighbors agree.
 class PieceMaker {
  public:
   using Add = std::function<int(const Vector3d& b)>;

@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 constexpr double kInPlane = 2e-6;   // of the extent: rounding of coordinates in a file
 constexpr double kNoCorner = 0.03;  // rad, turn of an outline that is no corner
 constexpr double kOpposite = 0.2;   // of the width: distance of an opposite side
-constexpr double kWide = 2.5;     // times as wide as its neighbour: hardly a chord of the same arc
-constexpr double kMisfit = 0.25;  // of the turns that explain a bend
+constexpr double kWide = 2.5;       // times as wide as its neighbor: hardly a chord of the same arc
+constexpr double kMisfit = 0.25;    // of the turns that explain a bend
 constexpr double kMisfitAngle = 0.02;  // rad
 constexpr std::size_t kSample = 64;    // triangles of a region that are measured
 constexpr int kPasses = 4;
@@ -55,12 +55,12 @@ double width_from(const SurfaceMesh& surface, const std::vector<int>& triangles,
 }
 
 // The next point of a region's outline after each; empty if the outline meets itself.
-std::map<int, int> outline_of(const SurfaceMesh& surface, const Neighbours& neighbours,
+std::map<int, int> outline_of(const SurfaceMesh& surface, const Neighbors& neighbors,
                               const PlanarRegions& regions, int region) {
   std::map<int, int> next;
   for (const int t : regions.triangles[at(region)])
     for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[at(t)][at(k)];
+      const int other = neighbors[at(t)][at(k)];
       if (other >= 0 && regions.of_triangle[at(other)] == region) continue;
       if (!next.emplace(surface.triangles(t, k), surface.triangles(t, (k + 1) % 3)).second)
         return {};
@@ -90,13 +90,13 @@ int count_corners(const SurfaceMesh& surface, const std::map<int, int>& next,
 // Decides which regions are curved, and across which of their sides.
 class ChordFinder {
  public:
-  ChordFinder(const SurfaceMesh& surface, const Neighbours& neighbours, PlanarRegions& regions,
+  ChordFinder(const SurfaceMesh& surface, const Neighbors& neighbors, PlanarRegions& regions,
               double feature_angle)
       : surface_(surface), regions_(regions), sides_of_(regions.triangles.size()) {
     const int n = static_cast<int>(regions.triangles.size());
-    find_sides(neighbours, feature_angle);
+    find_sides(neighbors, feature_angle);
     for (int r = 0; r < n; ++r) {
-      outline_.push_back(outline_of(surface, neighbours, regions, r));
+      outline_.push_back(outline_of(surface, neighbors, regions, r));
       corners_.push_back(count_corners(surface, outline_.back(), regions.normal[at(r)]));
       regions.flat.push_back(sides_of_[at(r)].empty() ||
                              (corners_.back() != 3 && corners_.back() != 4));
@@ -122,11 +122,11 @@ class ChordFinder {
   bool flat(const RegionSide& side) const { return regions_.flat[at(side.region)]; }
   bool wide(const RegionSide& side) const { return side.width > kWide * twin(side).width; }
 
-  void find_sides(const Neighbours& neighbours, double feature_angle) {
+  void find_sides(const Neighbors& neighbors, double feature_angle) {
     std::map<std::pair<int, int>, int> directed;
-    for (int t = 0; t < std::ssize(neighbours); ++t)
+    for (int t = 0; t < std::ssize(neighbors); ++t)
       for (int k = 0; k < 3; ++k) {
-        const int other = neighbours[at(t)][at(k)];
+        const int other = neighbors[at(t)][at(k)];
         if (other < 0) continue;
         const int r = regions_.of_triangle[at(t)], s = regions_.of_triangle[at(other)];
         const Vector3d &n = regions_.normal[at(r)], &m = regions_.normal[at(s)];
@@ -218,7 +218,7 @@ class ChordFinder {
   }
 
   // A point in the middle of a chord is none of the true surface: the facets were cut after they
-  // had been made, as modellers do that know polyhedra only.
+  // had been made, as modelers do that know polyhedra only.
   bool has_point_on_chord(int region) const {
     const std::map<int, int>& next = outline_[at(region)];
     std::map<int, bool> curved;  // by the first point of a smooth side
@@ -287,9 +287,9 @@ class ChordFinder {
 
 }  // namespace
 
-PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& neighbours) {
+PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbors& neighbors) {
   PlanarRegions regions;
-  const std::size_t n = neighbours.size();
+  const std::size_t n = neighbors.size();
   const double tolerance = kInPlane * extent(surface.points);
   std::vector<double> area(n);
   std::vector<int> order(n);
@@ -311,7 +311,7 @@ PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& 
     std::vector<int> group{seed};
     regions.of_triangle[at(seed)] = region;
     for (std::size_t i = 0; i < group.size(); ++i)
-      for (const int other : neighbours[at(group[i])]) {
+      for (const int other : neighbors[at(group[i])]) {
         if (other < 0 || regions.of_triangle[at(other)] >= 0 || !in_plane(other)) continue;
         regions.of_triangle[at(other)] = region;
         group.push_back(other);
@@ -324,9 +324,9 @@ PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& 
   return regions;
 }
 
-void mark_flat_regions(const SurfaceMesh& surface, const Neighbours& neighbours,
+void mark_flat_regions(const SurfaceMesh& surface, const Neighbors& neighbors,
                        PlanarRegions& regions, double feature_angle) {
-  ChordFinder(surface, neighbours, regions, feature_angle).run();
+  ChordFinder(surface, neighbors, regions, feature_angle).run();
 }
 
 }  // namespace codesign::fem

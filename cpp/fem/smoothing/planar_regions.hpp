@@ -25,7 +25,7 @@ struct PlanarRegions {
 };
 
 // Groups triangles into planes, largest first; `flat` is left empty.
-PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& neighbours);
+PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbors& neighbors);
 
 // Tells faces of the solid from chords of curved ones. A tangent-continuous surface whose planar
 // pieces R and S turn by t(R) and t(S) bends by (t(R) + t(S)) / 2 at their common edge; a turn is 0
@@ -33,7 +33,7 @@ PlanarRegions find_planar_regions(const SurfaceMesh& surface, const Neighbours& 
 // is concave. t(R) and t(S) follow from the edges opposite to the common one; which of them are 0
 // is what explains the bend there. Where nothing does, the edge is a crease and both run straight
 // on. Flat is what is curved nowhere, and what is no triangle or convex quadrangle.
-void mark_flat_regions(const SurfaceMesh& surface, const Neighbours& neighbours,
+void mark_flat_regions(const SurfaceMesh& surface, const Neighbors& neighbors,
                        PlanarRegions& regions, double feature_angle);
 
 }  // namespace codesign::fem

@@ -38,18 +38,18 @@ int root(std::vector<int>& parent, int i) {
   return i;
 }
 
-Sectors find_sectors(const SurfaceMesh& surface, const Neighbours& neighbours,
+Sectors find_sectors(const SurfaceMesh& surface, const Neighbors& neighbors,
                      const std::vector<std::array<bool, 3>>& sharp) {
-  std::vector<int> parent(3 * neighbours.size());
+  std::vector<int> parent(3 * neighbors.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto join = [&](int t, int k, int other) {
     for (int j = 0; j < 3; ++j)
       if (surface.triangles(other, j) == surface.triangles(t, k))
         parent[at(root(parent, 3 * t + k))] = root(parent, 3 * other + j);
   };
-  for (int t = 0; t < std::ssize(neighbours); ++t)
+  for (int t = 0; t < std::ssize(neighbors); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[at(t)][at(k)];
+      const int other = neighbors[at(t)][at(k)];
       if (other < 0 || sharp[at(t)][at(k)]) continue;
       join(t, k, other);
       join(t, (k + 1) % 3, other);
@@ -112,10 +112,10 @@ SectorNormals first_guess(const SurfaceMesh& surface, const PlanarRegions& regio
 // Least squares (n + m) · c = 0 over the edges of all triangles, kPrior · change = 0.
 class NormalFit {
  public:
-  NormalFit(const SurfaceMesh& surface, const Neighbours& neighbours, const PlanarRegions& regions,
+  NormalFit(const SurfaceMesh& surface, const Neighbors& neighbors, const PlanarRegions& regions,
             const Sectors& sectors, const std::vector<Vector3d>& axis, SectorNormals& normals)
       : surface_(surface),
-        neighbours_(neighbours),
+        neighbors_(neighbors),
         regions_(regions),
         sectors_(sectors),
         axis_(axis),
@@ -171,7 +171,7 @@ class NormalFit {
 
   // Diagonals of planar strips say nothing: another choice of them is the same surface.
   bool inside_plane(int t, int k) const {
-    const int other = neighbours_[at(t)][at(k)];
+    const int other = neighbors_[at(t)][at(k)];
     return other >= 0 && regions_.of_triangle[at(other)] == regions_.of_triangle[at(t)];
   }
 
@@ -212,7 +212,7 @@ class NormalFit {
   }
 
   const SurfaceMesh& surface_;
-  const Neighbours& neighbours_;
+  const Neighbors& neighbors_;
   const PlanarRegions& regions_;
   const Sectors& sectors_;
   const std::vector<Vector3d>& axis_;  // of the cylinder of each triangle, or zero
@@ -228,7 +228,7 @@ class NormalFit {
 // Axis of the cylinder (of any cross-section) each triangle belongs to, as told by the normals of
 // the regions connected with it; zero if none. Without it a rod's ends leave open whether its
 // straight lines are bulged.
-std::vector<Vector3d> cylinder_axes(const SurfaceMesh& surface, const Neighbours& neighbours,
+std::vector<Vector3d> cylinder_axes(const SurfaceMesh& surface, const Neighbors& neighbors,
                                     const SmoothNormals& found) {
   const PlanarRegions& regions = found.regions;
   std::set<std::pair<int, int>> straight;  // region, first point
@@ -236,9 +236,9 @@ std::vector<Vector3d> cylinder_axes(const SurfaceMesh& surface, const Neighbours
   const auto n = static_cast<int>(regions.triangles.size());
   std::vector<int> parent(at(n));
   std::iota(parent.begin(), parent.end(), 0);
-  for (int t = 0; t < std::ssize(neighbours); ++t)
+  for (int t = 0; t < std::ssize(neighbors); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[at(t)][at(k)], r = regions.of_triangle[at(t)];
+      const int other = neighbors[at(t)][at(k)], r = regions.of_triangle[at(t)];
       if (other < 0 || found.sharp[at(t)][at(k)]) continue;
       const int s = regions.of_triangle[at(other)];
       if (regions.flat[at(r)] || regions.flat[at(s)] ||
@@ -249,7 +249,7 @@ std::vector<Vector3d> cylinder_axes(const SurfaceMesh& surface, const Neighbours
     }
   std::vector<Eigen::Matrix3d> spread(at(n), Eigen::Matrix3d::Zero());
   std::vector<int> members(at(n), 0);
-  std::vector<Vector3d> axis(neighbours.size(), Vector3d::Zero());
+  std::vector<Vector3d> axis(neighbors.size(), Vector3d::Zero());
   for (int r = 0; r < n; ++r) {
     double area = 0.0;
     for (const int t : regions.triangles[at(r)]) area += triangle_area(surface, t);
@@ -290,12 +290,12 @@ bool fits(const SurfaceMesh& surface, const SmoothNormals& found, int t, double 
   return turn > kNoTurn;
 }
 
-void solve_normals(const SurfaceMesh& surface, const Neighbours& neighbours, double cosine,
+void solve_normals(const SurfaceMesh& surface, const Neighbors& neighbors, double cosine,
                    SmoothNormals& found) {
-  const Sectors sectors = find_sectors(surface, neighbours, found.sharp);
+  const Sectors sectors = find_sectors(surface, neighbors, found.sharp);
   SectorNormals normals = first_guess(surface, found.regions, sectors, cosine);
-  const std::vector<Vector3d> axis = cylinder_axes(surface, neighbours, found);
-  NormalFit(surface, neighbours, found.regions, sectors, axis, normals).run();
+  const std::vector<Vector3d> axis = cylinder_axes(surface, neighbors, found);
+  NormalFit(surface, neighbors, found.regions, sectors, axis, normals).run();
   for (int t = 0; t < surface.triangles.rows(); ++t) {
     const int region = found.regions.of_triangle[at(t)];
     const bool flat = found.regions.flat[at(region)];
@@ -309,24 +309,24 @@ void solve_normals(const SurfaceMesh& surface, const Neighbours& neighbours, dou
 }
 
 // Where a flat meets a facet that does not run into it tangentially, the edge is a crease.
-bool mark_creases(const Neighbours& neighbours, SmoothNormals& found) {
+bool mark_creases(const Neighbors& neighbors, SmoothNormals& found) {
   bool any = false;
   const auto flat = [&](int t) { return found.regions.flat[at(found.regions.of_triangle[at(t)])]; };
-  for (int t = 0; t < std::ssize(neighbours); ++t)
+  for (int t = 0; t < std::ssize(neighbors); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[at(t)][at(k)];
+      const int other = neighbors[at(t)][at(k)];
       if (other < 0 || found.sharp[at(t)][at(k)] || !flat(other)) continue;
       if (flat(t) || found.curved[at(t)]) continue;
       found.sharp[at(t)][at(k)] = true;
       for (std::size_t j = 0; j < 3; ++j)
-        if (neighbours[at(other)][j] == t) found.sharp[at(other)][j] = true;
+        if (neighbors[at(other)][j] == t) found.sharp[at(other)][j] = true;
       any = true;
     }
   return any;
 }
 
 // Edges sharper than the feature angle, and those where neither side is curved.
-void mark_sharp(const SurfaceMesh& surface, const Neighbours& neighbours, double feature_angle,
+void mark_sharp(const SurfaceMesh& surface, const Neighbors& neighbors, double feature_angle,
                 SmoothNormals& found) {
   const PlanarRegions& regions = found.regions;
   std::set<std::pair<int, int>> straight;  // region, first point
@@ -334,9 +334,9 @@ void mark_sharp(const SurfaceMesh& surface, const Neighbours& neighbours, double
   const auto runs_on = [&](int region, int from) {
     return regions.flat[at(region)] || straight.count({region, from}) > 0;
   };
-  for (int t = 0; t < std::ssize(neighbours); ++t)
+  for (int t = 0; t < std::ssize(neighbors); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[at(t)][at(k)];
+      const int other = neighbors[at(t)][at(k)];
       if (other < 0) continue;
       const int r = regions.of_triangle[at(t)], s = regions.of_triangle[at(other)];
       const double cosine = regions.normal[at(r)].dot(regions.normal[at(s)]);
@@ -350,17 +350,17 @@ void mark_sharp(const SurfaceMesh& surface, const Neighbours& neighbours, double
 }  // namespace
 
 SmoothNormals find_smooth_normals(const SurfaceMesh& surface, double feature_angle) {
-  const Neighbours neighbours = triangle_neighbours(surface.triangles);
-  const std::size_t n = neighbours.size();
+  const Neighbors neighbors = triangle_neighbors(surface.triangles);
+  const std::size_t n = neighbors.size();
   SmoothNormals found{std::vector<std::array<Vector3d, 3>>(n), std::vector<std::array<bool, 3>>(n),
                       std::vector<std::array<bool, 3>>(n), std::vector<bool>(n),
-                      find_planar_regions(surface, neighbours)};
-  mark_flat_regions(surface, neighbours, found.regions, feature_angle);
-  mark_sharp(surface, neighbours, feature_angle, found);
+                      find_planar_regions(surface, neighbors)};
+  mark_flat_regions(surface, neighbors, found.regions, feature_angle);
+  mark_sharp(surface, neighbors, feature_angle, found);
   const double cosine = std::cos(kOfFeature * feature_angle);
-  solve_normals(surface, neighbours, cosine, found);
-  for (int i = 0; i < kCreaseRounds && mark_creases(neighbours, found); ++i)
-    solve_normals(surface, neighbours, cosine, found);
+  solve_normals(surface, neighbors, cosine, found);
+  for (int i = 0; i < kCreaseRounds && mark_creases(neighbors, found); ++i)
+    solve_normals(surface, neighbors, cosine, found);
   return found;
 }
 

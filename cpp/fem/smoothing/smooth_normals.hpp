@@ -20,7 +20,7 @@ struct SmoothNormals {
 // Triangles that meet at a corner across smooth edges share its normal. First guess: the mean of
 // the planar regions' normals, weighted by angle, so that it does not matter how a strip is cut
 // into triangles (G. Thürmer, C. Wüthrich, "Computing vertex normals from polygonal facets", J.
-// Graphics Tools 3(1), 1998). Then the normals n, m at both ends of every edge c shall fulfil
+// Graphics Tools 3(1), 1998). Then the normals n, m at both ends of every edge c shall fulfill
 // (n + m) · c = 0, as on planes, spheres and cylinders for any chord, in the sense of least
 // squares, with those of flat regions held and straight lines of cylinders kept straight. Where
 // they contradict a triangle it stays as it is. feature_angle [rad]: edges sharper than this are

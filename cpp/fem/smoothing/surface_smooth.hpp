@@ -10,7 +10,7 @@ struct SmoothReport {
   int facets = 0;              // triangles replaced by curved ones
   double max_distance = 0.0;   // of a new point from its place on the triangle replaced, m
   double volume_change = 0.0;  // relative
-  int left = 0;                // triangles that were left as they are lest the surface folds
+  int left = 0;                // triangles left flat: curving them would fold the surface
   std::string reason;          // why nothing was curved at all; empty otherwise
 };
 

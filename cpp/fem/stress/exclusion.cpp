@@ -24,9 +24,9 @@ bool ExclusionZone::skips(int triangle) const {
 
 void ExclusionZone::set_published(const TetMesh& mesh, const HeldAndLoaded& faces,
                                   double distance) {
-  const Neighbours neighbours = boundary_neighbours(mesh);
-  const std::vector<BorderEdge> held = border_edges(neighbours, faces.clamped, {}),
-                                loaded = border_edges(neighbours, faces.loaded, {});
+  const Neighbors neighbors = boundary_neighbors(mesh);
+  const std::vector<BorderEdge> held = border_edges(neighbors, faces.clamped, {}),
+                                loaded = border_edges(neighbors, faces.loaded, {});
   for (const auto* edges : {&held, &loaded}) {
     for (const BorderEdge& e : *edges) borders_.add_edge(mesh, e.inside, e.side, 0.0);
   }
@@ -40,18 +40,18 @@ void ExclusionZone::set_published(const TetMesh& mesh, const HeldAndLoaded& face
 
 void ExclusionZone::set_local(const TetMesh& mesh, const HeldAndLoaded& faces,
                               std::optional<double> distance) {
-  const Neighbours neighbours = boundary_neighbours(mesh);
-  std::vector<BorderEdge> held = border_edges(neighbours, faces.clamped, faces.symmetric);
+  const Neighbors neighbors = boundary_neighbors(mesh);
+  std::vector<BorderEdge> held = border_edges(neighbors, faces.clamped, faces.symmetric);
   const std::vector<double> features =
       distance ? std::vector<double>(held.size())
-               : local_features(mesh, neighbours, faces.clamped, held, kFeatureShare);
+               : local_features(mesh, neighbors, faces.clamped, held, kFeatureShare);
   for (std::size_t i = 0; i < held.size(); ++i) {
     const double reach = distance.value_or(kFeatureShare * features[i]);
     borders_.add_edge(mesh, held[i].inside, held[i].side, 0.0);
     if (reach > 0) near_.add_edge(mesh, held[i].inside, held[i].side, reach);
   }
   const double pocket = distance.value_or(std::min(kPublishedDistance, 0.1 * extent(mesh.nodes)));
-  for (const BorderEdge& e : border_edges(neighbours, faces.loaded, faces.symmetric)) {
+  for (const BorderEdge& e : border_edges(neighbors, faces.loaded, faces.symmetric)) {
     borders_.add_edge(mesh, e.inside, e.side, 0.0);
     if (pocket > 0 && is_sharp_pocket(mesh, e, kSharpBend)) {
       near_.add_edge(mesh, e.inside, e.side, pocket);

@@ -86,14 +86,14 @@ class Walls {
 // What limits the size of a feature along the smooth surface beside an edge.
 class Surroundings {
  public:
-  Surroundings(const FlatBoundary& flat, const Neighbours& neighbours, const Walls& walls,
+  Surroundings(const FlatBoundary& flat, const Neighbors& neighbors, const Walls& walls,
                double share)
       : flat_(flat),
-        neighbours_(neighbours),
+        neighbors_(neighbors),
         walls_(walls),
         share_(share),
-        wall_(neighbours.size(), -1.0),
-        seen_(neighbours.size(), -1) {}
+        wall_(neighbors.size(), -1.0),
+        seen_(neighbors.size(), -1) {}
 
   // The smallest, at most `limit` (m), of the wall behind the triangle `start`, the distance to the
   // nearest triangle of its smooth surface whose normal differs by a radian, and what keeps the
@@ -107,7 +107,7 @@ class Surroundings {
     seen_[at(start)] = ++stamp_;
     for (std::size_t i = 0; i < queue_.size(); ++i) {
       const int t = queue_[i];
-      for (const int other : neighbours_[at(t)]) {
+      for (const int other : neighbors_[at(t)]) {
         if (other < 0 || seen_[at(other)] == stamp_) continue;
         if (flat_.normal.row(t).dot(flat_.normal.row(other)) < smooth) continue;
         const double distance = (flat_.centroid.row(other) - origin).norm();
@@ -133,7 +133,7 @@ class Surroundings {
   }
 
   const FlatBoundary& flat_;
-  const Neighbours& neighbours_;
+  const Neighbors& neighbors_;
   const Walls& walls_;
   double share_;
   std::vector<double> wall_;  // -1: not yet known
@@ -142,10 +142,10 @@ class Surroundings {
 };
 
 // 4 A / P of the connected piece of the set that each of its triangles belongs to.
-std::vector<double> patch_sizes(const TetMesh& mesh, const Neighbours& neighbours,
+std::vector<double> patch_sizes(const TetMesh& mesh, const Neighbors& neighbors,
                                 const std::vector<int>& set,
                                 const std::vector<BorderEdge>& border) {
-  std::vector<int> piece(neighbours.size(), -1);
+  std::vector<int> piece(neighbors.size(), -1);
   for (const int t : set) piece[at(t)] = -2;
   std::vector<double> areas, perimeters;
   for (const int first : set) {
@@ -156,7 +156,7 @@ std::vector<double> patch_sizes(const TetMesh& mesh, const Neighbours& neighbour
     double sum = 0.0;
     for (std::size_t i = 0; i < queue.size(); ++i) {
       sum += area(mesh, queue[i]);
-      for (const int other : neighbours[at(queue[i])]) {
+      for (const int other : neighbors[at(queue[i])]) {
         if (other < 0 || piece[at(other)] != -2) continue;
         piece[at(other)] = number;
         queue.push_back(other);
@@ -178,8 +178,8 @@ std::vector<double> patch_sizes(const TetMesh& mesh, const Neighbours& neighbour
 
 }  // namespace
 
-Neighbours boundary_neighbours(const TetMesh& mesh) {
-  return triangle_neighbours(mesh.boundary.leftCols<3>());
+Neighbors boundary_neighbors(const TetMesh& mesh) {
+  return triangle_neighbors(mesh.boundary.leftCols<3>());
 }
 
 bool is_sharp_pocket(const TetMesh& mesh, const BorderEdge& edge, double bend) {
@@ -196,12 +196,12 @@ bool is_sharp_pocket(const TetMesh& mesh, const BorderEdge& edge, double bend) {
   return away.dot(n) > 0 && n.dot(normal(edge.outside)) < std::cos(bend);
 }
 
-std::vector<BorderEdge> border_edges(const Neighbours& neighbours, const std::vector<int>& set,
+std::vector<BorderEdge> border_edges(const Neighbors& neighbors, const std::vector<int>& set,
                                      const std::vector<int>& ignored) {
   std::vector<BorderEdge> edges;
   for (const int t : set) {
     for (int k = 0; k < 3; ++k) {
-      const int other = neighbours[at(t)][at(k)];
+      const int other = neighbors[at(t)][at(k)];
       if (other < 0 || std::binary_search(set.begin(), set.end(), other)) continue;
       if (std::binary_search(ignored.begin(), ignored.end(), other)) continue;
       edges.push_back({t, k, other});
@@ -210,14 +210,14 @@ std::vector<BorderEdge> border_edges(const Neighbours& neighbours, const std::ve
   return edges;
 }
 
-std::vector<double> local_features(const TetMesh& mesh, const Neighbours& neighbours,
+std::vector<double> local_features(const TetMesh& mesh, const Neighbors& neighbors,
                                    const std::vector<int>& clamped,
                                    const std::vector<BorderEdge>& border, double share) {
   if (border.empty()) return {};
   const FlatBoundary flat(mesh);
   const Walls walls(mesh, flat, clamped);
-  Surroundings surroundings(flat, neighbours, walls, share);
-  std::vector<double> sizes = patch_sizes(mesh, neighbours, clamped, border);
+  Surroundings surroundings(flat, neighbors, walls, share);
+  std::vector<double> sizes = patch_sizes(mesh, neighbors, clamped, border);
   for (std::size_t i = 0; i < border.size(); ++i) {
     for (const int t : {border[i].outside, border[i].inside}) {
       sizes[i] = surroundings.size_at(t, sizes[i]);

@@ -36,7 +36,7 @@ void raise_in_element(const TetMesh& mesh, const ElementStress& stress, int elem
 [[noreturn]] void throw_no_place_left();
 
 // Largest von Mises stress of the nodal stress interpolated over the boundary faces, sampled at 66
-// points a face, outside the zone. Throws ModelError if the zone leaves no point.
+// points per face, outside the zone. Throws ModelError if the zone leaves no point.
 PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone);
 
 // The largest such stress inside the zone; value 0 if the zone holds no point of the surface.

@@ -60,7 +60,7 @@ bool share_side(const TetMesh& mesh, int a, int b) {
   return common >= 3;
 }
 
-// Collects the elements around a corner node, and their neighbours through sides as long as they
+// Collects the elements around a corner node, and their neighbors through sides as long as they
 // are fewer than ten.
 class PatchFinder {
  public:
@@ -87,10 +87,10 @@ class PatchFinder {
     return patch_;
   }
 
-  // Adds the neighbours of the outermost ring; false if there are none.
+  // Adds the neighbors of the outermost ring; false if there are none.
   bool grow() {
     const std::size_t ring = patch_.size();
-    for (; rim_ < ring; ++rim_) add_neighbours(patch_[rim_]);
+    for (; rim_ < ring; ++rim_) add_neighbors(patch_[rim_]);
     return patch_.size() > ring;
   }
 
@@ -107,7 +107,7 @@ class PatchFinder {
     patch_.push_back(element);
   }
 
-  void add_neighbours(int element) {
+  void add_neighbors(int element) {
     for (int k = 0; k < 4; ++k) {
       const int corner = mesh_.tets(element, k);
       for (int j = incidence_.start[at(corner)]; j < incidence_.start[at(corner) + 1]; ++j) {
@@ -123,7 +123,7 @@ class PatchFinder {
   int number_ = 0;                 // of the patch
   bool grown_ = false;
   std::size_t core_ = 0,
-              rim_ = 0;  // elements that touch the node; whose neighbours are in the patch
+              rim_ = 0;  // elements that touch the node; whose neighbors are in the patch
 };
 
 // A quadratic stress around a corner node.

@@ -11,7 +11,9 @@ namespace codesign::fem {
 // Continuous stress at the nodes by superconvergent patch recovery: around each corner node a
 // quadratic polynomial is fitted to the point stresses of the surrounding elements (at least ten,
 // and more where these hardly determine it), near points weighing most; it is read at the corner
-// and, averaged over the two ends, at the mid-edge nodes.
+// and, averaged over the two ends, at the mid-edge nodes. With the ten terms p(r) = (1, x, y, z,
+// x², …, zx) of the place r over the patch radius, from the corner: σ(r) = Aᵀ p(r), A minimizing
+// Σ_i w_i |Aᵀ p(r_i) − σ_i|², w = (|r|² + 0.01)^(−3/2).
 // Source: Zienkiewicz and Zhu 1992; the weights follow moving least squares. Measured on notches
 // and on a thick cylinder (docs/fem.md): third order where averaged element stresses have second.
 Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);

@@ -30,12 +30,12 @@ MassProperties mass_properties(const SurfaceMesh& surface, double density) {
     second +=
         v / 20.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
   }
-  const Eigen::Vector3d centre = first / volume;
-  const Eigen::Matrix3d central = second - volume * centre * centre.transpose();
+  const Eigen::Vector3d center = first / volume;
+  const Eigen::Matrix3d central = second - volume * center * center.transpose();
   MassProperties properties;
   properties.volume = volume;
   properties.mass = density * volume;
-  properties.com = apex + centre;
+  properties.com = apex + center;
   properties.inertia = density * (central.trace() * Eigen::Matrix3d::Identity() - central);
   return properties;
 }

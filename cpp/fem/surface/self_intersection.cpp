@@ -22,7 +22,7 @@ using Polyhedron = CGAL::Surface_mesh<Kernel::Point_3>;
 
 Kernel::Point_3 exact(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
-std::string centre(const SurfaceMesh& surface, Eigen::Index t) {
+std::string center(const SurfaceMesh& surface, Eigen::Index t) {
   const Eigen::Vector3d p =
       (corner(surface, t, 0) + corner(surface, t, 1) + corner(surface, t, 2)) / 3.0;
   char text[96];
@@ -44,7 +44,7 @@ std::vector<std::pair<int, int>> crossing_triangles(const SurfaceMesh& surface, 
                                           at(surface.triangles(t, 2)));
     if (face == Polyhedron::null_face())
       throw MeshError("the surface touches itself in a point near triangle " + std::to_string(t) +
-                      " at " + centre(surface, t));
+                      " at " + center(surface, t));
   }
   using Face = Polyhedron::Face_index;
   std::vector<std::pair<Face, Face>> crossing;
@@ -61,11 +61,11 @@ void check_self_intersection(const SurfaceMesh& surface) {
   if (crossing.empty()) return;
   const auto [a, b] = crossing.front();
   if (a == b)
-    throw MeshError("triangle " + std::to_string(a) + " at " + centre(surface, a) +
+    throw MeshError("triangle " + std::to_string(a) + " at " + center(surface, a) +
                     " has no area: its corners lie on one line");
   throw MeshError("the surface crosses itself: triangle " + std::to_string(a) + " at " +
-                  centre(surface, a) + " and triangle " + std::to_string(b) + " at " +
-                  centre(surface, b));
+                  center(surface, a) + " and triangle " + std::to_string(b) + " at " +
+                  center(surface, b));
 }
 
 bool is_degenerate(const Facet& facet) {

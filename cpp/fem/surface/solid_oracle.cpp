@@ -103,10 +103,10 @@ Vector3d nearest_in_triangle(const Vector3d& p, const Vector3d (&x)[3]) {
 
 SolidOracle::SolidOracle(const SurfaceMesh& surface, const std::vector<int>& group) {
   const auto n = static_cast<std::size_t>(surface.triangles.rows());
-  std::vector<Vector3d> centres(n);
+  std::vector<Vector3d> centers(n);
   for (std::size_t t = 0; t < n; ++t) {
     const auto row = static_cast<Eigen::Index>(t);
-    centres[t] =
+    centers[t] =
         (corner(surface, row, 0) + corner(surface, row, 1) + corner(surface, row, 2)) / 3.0;
   }
   order_.resize(n);
@@ -116,7 +116,7 @@ SolidOracle::SolidOracle(const SurfaceMesh& surface, const std::vector<int>& gro
     for (int k = 0; k < 3; ++k) corners_[t].x[k] = corner(surface, static_cast<Eigen::Index>(t), k);
   const std::vector<Corners> by_triangle = corners_;
   nodes_.reserve(n);
-  build(0, static_cast<int>(n), centres);
+  build(0, static_cast<int>(n), centers);
   group_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     corners_[i] = by_triangle[static_cast<std::size_t>(order_[i])];
@@ -124,8 +124,8 @@ SolidOracle::SolidOracle(const SurfaceMesh& surface, const std::vector<int>& gro
   }
 }
 
-// Splits at the median of the longest side of the box of the centres.
-void SolidOracle::build(int first, int last, const std::vector<Vector3d>& centres) {
+// Splits at the median of the longest side of the box of the centers.
+void SolidOracle::build(int first, int last, const std::vector<Vector3d>& centers) {
   const std::size_t index = nodes_.size();
   Node node{Vector3d::Constant(kInfinity), Vector3d::Constant(-kInfinity), first, last - first};
   Vector3d lower = node.lower, upper = node.upper;
@@ -135,8 +135,8 @@ void SolidOracle::build(int first, int last, const std::vector<Vector3d>& centre
       node.lower = node.lower.cwiseMin(x);
       node.upper = node.upper.cwiseMax(x);
     }
-    lower = lower.cwiseMin(centres[static_cast<std::size_t>(t)]);
-    upper = upper.cwiseMax(centres[static_cast<std::size_t>(t)]);
+    lower = lower.cwiseMin(centers[static_cast<std::size_t>(t)]);
+    upper = upper.cwiseMax(centers[static_cast<std::size_t>(t)]);
   }
   nodes_.push_back(node);
   if (last - first <= kLeafSize) return;
@@ -145,14 +145,14 @@ void SolidOracle::build(int first, int last, const std::vector<Vector3d>& centre
   const int middle = (first + last) / 2;
   std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
                    [&](int s, int t) {
-                     const double x = centres[static_cast<std::size_t>(s)][axis];
-                     const double y = centres[static_cast<std::size_t>(t)][axis];
+                     const double x = centers[static_cast<std::size_t>(s)][axis];
+                     const double y = centers[static_cast<std::size_t>(t)][axis];
                      return x < y || (x == y && s < t);
                    });
-  build(first, middle, centres);
+  build(first, middle, centers);
   nodes_[index].first = static_cast<int>(nodes_.size());
   nodes_[index].count = 0;
-  build(middle, last, centres);
+  build(middle, last, centers);
 }
 
 // Visits the triangles of all leaves whose boxes `enter` accepts, until `visit` returns true.
@@ -228,7 +228,7 @@ std::optional<SolidOracle::Piece> SolidOracle::clip(const Vector3d& base, const 
 
 // Whether the line from p upwards, in z, meets the triangle above p. In x and y the point is inside
 // if the half-line towards +x leaves through one edge or three; an edge counts if its lower end is
-// at or below p and its upper end above, so that neighbours never both claim or both drop it.
+// at or below p and its upper end above, so that neighbors never both claim or both drop it.
 bool SolidOracle::meets(const Vector3d& p, const Corners& triangle) {
   const auto& x = triangle.x;
   bool inside = false;

@@ -65,7 +65,7 @@ class SolidOracle {
     Eigen::Vector3d x[3];
   };
 
-  void build(int first, int last, const std::vector<Eigen::Vector3d>& centres);
+  void build(int first, int last, const std::vector<Eigen::Vector3d>& centers);
   static bool meets(const Eigen::Vector3d& p, const Corners& triangle);
   template <class Enter, class Visit>
   void traverse(Enter enter, Visit visit) const;

@@ -233,8 +233,8 @@ int find_root(std::vector<int>& parent, int i) {
   return i;
 }
 
-// Merges points closer than `tolerance`: sorted along x, each compared with its neighbours within
-// the tolerance. Bounded: a point looks at 64 neighbours at most.
+// Merges points closer than `tolerance`: sorted along x, each compared with its neighbors within
+// the tolerance. Bounded: a point looks at 64 neighbors at most.
 void merge_close_points(SurfaceMesh& surface, double tolerance) {
   const int n = static_cast<int>(surface.points.rows());
   std::vector<int> order(static_cast<std::size_t>(n)), parent(static_cast<std::size_t>(n));
@@ -285,7 +285,7 @@ void compact(SurfaceMesh& surface) {
 
 SurfaceMesh parse_stl(std::string_view bytes, double scale) {
   if (!(scale > 0.0) || !std::isfinite(scale))
-    throw std::invalid_argument("scale: a positive number of metres per unit is needed");
+    throw std::invalid_argument("scale: a positive number of meters per unit is needed");
   if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);  // byte order mark of a text
   if (bytes.empty()) throw MeshError("the file is empty");
   const bool binary_length =

@@ -14,7 +14,7 @@ inline constexpr std::size_t kMaxTriangles = 2'000'000;
 // promises, not by the word "solid"). Corners with equal coordinates become one point, and points
 // closer than the single-precision resolution are merged if the surface would be open otherwise.
 // One unnamed face. Throws MeshError: empty, truncated, not a number (with line or triangle), too
-// many triangles. scale: metres per unit of the file.
+// many triangles. scale: meters per unit of the file.
 SurfaceMesh parse_stl(std::string_view bytes, double scale);
 
 // parse_stl of a file, with the file's name in front of every message.

@@ -40,7 +40,7 @@ bool lies_between(const Eigen::RowVector3d& p, const Eigen::RowVector3d& a,
          (p - a).norm() > resolution && (p - b).norm() > resolution;
 }
 
-// Where a corner lies on the edge of a neighbour instead of on its end; empty if there is no such
+// Where a corner lies on the edge of a neighbor instead of on its end; empty if there is no such
 // place among the first open edges.
 std::string t_junction(const SurfaceMesh& surface, const std::vector<std::pair<int, int>>& open) {
   constexpr std::size_t kMostEdges = 1000;  // all pairs are looked at
@@ -52,7 +52,7 @@ std::string t_junction(const SurfaceMesh& surface, const std::vector<std::pair<i
       const Eigen::RowVector3d p = surface.points.row(open[j].first);
       if (lies_between(p, surface.points.row(a), surface.points.row(b), resolution))
         return "; the corner " + place(p) +
-               " of a triangle lies on the edge of its neighbour from " +
+               " of a triangle lies on the edge of its neighbor from " +
                place(surface.points.row(a)) + " to " + place(surface.points.row(b)) +
                " (a T-junction)";
     }
@@ -106,7 +106,7 @@ void check_edges(const SurfaceMesh& surface) {
     if (same == 1 && back == 1) return;
     if (same + back > 2) fail_by_edge_of_many(surface, a, b, same + back);
     if (same == 2)
-      throw MeshError("two neighbouring triangles are oriented against each other at " +
+      throw MeshError("two neighboring triangles are oriented against each other at " +
                       edge_place(surface, a, b));
     open.emplace_back(a, b);
   });
@@ -128,7 +128,7 @@ SurfaceReport check_surface(const SurfaceMesh& surface) {
   const double size = extent(surface.points);
   if (!(size <= kLargestExtent && size >= kSmallestExtent))
     throw MeshError("the surface is " + std::to_string(size) +
-                    " m large, outside 1e-7 m to 1e4 m: check the scale (1e-3 for millimetres)");
+                    " m large, outside 1e-7 m to 1e4 m: check the scale (1e-3 for millimeters)");
   check_edges(surface);
 
   SurfaceReport report{};

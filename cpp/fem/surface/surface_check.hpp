@@ -4,7 +4,7 @@
 
 namespace codesign::fem {
 
-// What a surface is like; lengths in metres.
+// What a surface is like; lengths in meters.
 struct SurfaceReport {
   double volume, area;       // m³, m²
   double shortest_edge;      // m
@@ -13,7 +13,7 @@ struct SurfaceReport {
 };
 
 // Measures a closed surface. Throws MeshError, saying what, where and why: empty, larger than
-// kMaxTriangles or 10 km, open, edges of more than two triangles, neighbours of opposite
+// kMaxTriangles or 10 km, open, edges of more than two triangles, neighbors of opposite
 // orientation, inside-out, no volume.
 SurfaceReport check_surface(const SurfaceMesh& surface);
 

@@ -19,11 +19,11 @@ constexpr double kCornerCosine = 0.7071067811865476;  // lines are cut where the
 // Groups of triangles connected through edges for which `joined(t, k)` holds; numbered in the order
 // of their first triangle.
 template <class Joined>
-std::pair<std::vector<int>, int> connected_groups(const Neighbours& neighbours, Joined joined) {
-  std::vector<int> group(neighbours.size(), -1);
+std::pair<std::vector<int>, int> connected_groups(const Neighbors& neighbors, Joined joined) {
+  std::vector<int> group(neighbors.size(), -1);
   std::vector<int> stack;
   int groups = 0;
-  for (std::size_t seed = 0; seed < neighbours.size(); ++seed) {
+  for (std::size_t seed = 0; seed < neighbors.size(); ++seed) {
     if (group[seed] >= 0) continue;
     group[seed] = groups;
     stack.push_back(static_cast<int>(seed));
@@ -31,7 +31,7 @@ std::pair<std::vector<int>, int> connected_groups(const Neighbours& neighbours, 
       const auto t = static_cast<std::size_t>(stack.back());
       stack.pop_back();
       for (int k = 0; k < 3; ++k) {
-        const int other = neighbours[t][static_cast<std::size_t>(k)];
+        const int other = neighbors[t][static_cast<std::size_t>(k)];
         if (other < 0 || group[static_cast<std::size_t>(other)] >= 0 || !joined(t, k)) continue;
         group[static_cast<std::size_t>(other)] = groups;
         stack.push_back(other);
@@ -44,12 +44,12 @@ std::pair<std::vector<int>, int> connected_groups(const Neighbours& neighbours, 
 
 }  // namespace
 
-Neighbours triangle_neighbours(const Triangles& triangles) {
+Neighbors triangle_neighbors(const Triangles& triangles) {
   struct Side {
     int triangle, edge, uses;
   };
   const auto n = static_cast<std::size_t>(triangles.rows());
-  Neighbours neighbours(n, {-1, -1, -1});
+  Neighbors neighbors(n, {-1, -1, -1});
   std::unordered_map<std::uint64_t, Side> first;
   first.reserve(2 * n);
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
@@ -59,42 +59,42 @@ Neighbours triangle_neighbours(const Triangles& triangles) {
       if (fresh) continue;
       Side& side = at->second;
       int& there =
-          neighbours[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.edge)];
+          neighbors[static_cast<std::size_t>(side.triangle)][static_cast<std::size_t>(side.edge)];
       if (++side.uses == 2) {
         there = static_cast<int>(t);
-        neighbours[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = side.triangle;
+        neighbors[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = side.triangle;
       } else if (there >= 0) {  // a third triangle: the edge joins nobody
-        auto& second = neighbours[static_cast<std::size_t>(there)];
+        auto& second = neighbors[static_cast<std::size_t>(there)];
         std::replace(second.begin(), second.end(), side.triangle, -1);
         there = -1;
       }
     }
-  return neighbours;
+  return neighbors;
 }
 
 Patches find_patches(const SurfaceMesh& surface, double feature_angle) {
   Patches patches;
-  patches.neighbours = triangle_neighbours(surface.triangles);
+  patches.neighbors = triangle_neighbors(surface.triangles);
   std::vector<Eigen::Vector3d> normals;
-  normals.reserve(patches.neighbours.size());
+  normals.reserve(patches.neighbors.size());
   for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
     normals.push_back(triangle_normal(surface, t));
   const double cosine = std::cos(feature_angle);
   const auto smooth = [&](std::size_t t, int k) {
-    const auto other = static_cast<std::size_t>(patches.neighbours[t][static_cast<std::size_t>(k)]);
+    const auto other = static_cast<std::size_t>(patches.neighbors[t][static_cast<std::size_t>(k)]);
     return surface.face[t] == surface.face[other] && normals[t].dot(normals[other]) >= cosine;
   };
   patches.line.assign(normals.size(), {false, false, false});
   for (std::size_t t = 0; t < normals.size(); ++t)
     for (int k = 0; k < 3; ++k)
       patches.line[t][static_cast<std::size_t>(k)] =
-          patches.neighbours[t][static_cast<std::size_t>(k)] >= 0 && !smooth(t, k);
+          patches.neighbors[t][static_cast<std::size_t>(k)] >= 0 && !smooth(t, k);
   int count = 0;
   std::tie(patches.of_triangle, count) = connected_groups(
-      patches.neighbours,
+      patches.neighbors,
       [&](std::size_t t, int k) { return !patches.line[t][static_cast<std::size_t>(k)]; });
   std::tie(patches.shell, patches.shells) =
-      connected_groups(patches.neighbours, [](std::size_t, int) { return true; });
+      connected_groups(patches.neighbors, [](std::size_t, int) { return true; });
   patches.face.assign(static_cast<std::size_t>(count), 0);
   for (std::size_t t = 0; t < patches.of_triangle.size(); ++t)
     patches.face[static_cast<std::size_t>(patches.of_triangle[t])] = surface.face[t];
@@ -111,9 +111,9 @@ struct LineEdge {
 // Edges that are feature lines, each once.
 std::vector<LineEdge> line_edges(const SurfaceMesh& surface, const Patches& patches) {
   std::vector<LineEdge> edges;
-  for (std::size_t t = 0; t < patches.neighbours.size(); ++t)
+  for (std::size_t t = 0; t < patches.neighbors.size(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const int other = patches.neighbours[t][static_cast<std::size_t>(k)];
+      const int other = patches.neighbors[t][static_cast<std::size_t>(k)];
       if (!patches.line[t][static_cast<std::size_t>(k)] || static_cast<int>(t) > other) continue;
       const int p = patches.of_triangle[t];
       const int q = patches.of_triangle[static_cast<std::size_t>(other)];

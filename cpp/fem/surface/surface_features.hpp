@@ -8,10 +8,10 @@
 
 namespace codesign::fem {
 
-// neighbours[t][k]: the triangle across the edge from corner k to corner k + 1 of triangle t, or -1
+// neighbors[t][k]: the triangle across the edge from corner k to corner k + 1 of triangle t, or -1
 // where the surface is open or the edge is shared by more than two triangles.
-using Neighbours = std::vector<std::array<int, 3>>;
-Neighbours triangle_neighbours(const Triangles& triangles);
+using Neighbors = std::vector<std::array<int, 3>>;
+Neighbors triangle_neighbors(const Triangles& triangles);
 
 // Pieces of the surface that are bounded by feature lines: edges between different faces, and edges
 // where the normal turns by more than `feature_angle` [rad].
@@ -20,7 +20,7 @@ struct Patches {
   std::vector<int> face;         // (patches) the face each patch belongs to
   std::vector<int> shell;        // (m) separate closed piece of the surface, 0-based
   int shells;
-  Neighbours neighbours;
+  Neighbors neighbors;
   std::vector<std::array<bool, 3>> line;  // (m) whether the edge from corner k is a feature line
 };
 Patches find_patches(const SurfaceMesh& surface, double feature_angle);

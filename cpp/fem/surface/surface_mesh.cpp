@@ -11,7 +11,7 @@ namespace codesign::fem {
 void check_arrays(const SurfaceMesh& surface) {
   const Eigen::Index points = surface.points.rows();
   if (static_cast<Eigen::Index>(surface.face.size()) != surface.triangles.rows())
-    throw std::invalid_argument("face: one entry a triangle is needed, got " +
+    throw std::invalid_argument("face: one entry per triangle is needed, got " +
                                 std::to_string(surface.face.size()) + " for " +
                                 std::to_string(surface.triangles.rows()) + " triangles");
   for (Eigen::Index i = 0; i < points; ++i)

@@ -73,7 +73,7 @@ class Collapser {
       if (gone_[static_cast<std::size_t>(t)]) continue;
       for (int k = 0; k < 3; ++k) {
         const int a = surface_.triangles(t, k), b = surface_.triangles(t, (k + 1) % 3);
-        if (a > b) continue;  // the neighbour sees it the other way round
+        if (a > b) continue;  // the neighbor sees it the other way round
         const double length = (point(a) - point(b)).norm();
         if (length <= 2.0 * tolerance_) edges.push_back({length, {a, b}});
       }
@@ -115,7 +115,7 @@ class Collapser {
 
   bool has_corner(int t, int p) const { return (surface_.triangles.row(t).array() == p).any(); }
 
-  // The neighbours common to both ends are the two opposite corners of the edge and no others.
+  // The neighbors common to both ends are the two opposite corners of the edge and no others.
   bool keeps_topology(int a, int b, const std::vector<int>& shared) {
     const auto ring = [&](int p) {
       std::vector<int> points;

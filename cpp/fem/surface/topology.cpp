@@ -27,11 +27,11 @@ struct Fans {
   int open_edges = 0;
 };
 
-Fans join_corners(const Triangles& triangles, const Neighbours& neighbours) {
-  Fans fans{Sets(3 * neighbours.size())};
-  for (std::size_t t = 0; t < neighbours.size(); ++t)
+Fans join_corners(const Triangles& triangles, const Neighbors& neighbors) {
+  Fans fans{Sets(3 * neighbors.size())};
+  for (std::size_t t = 0; t < neighbors.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const int other = neighbours[t][k];
+      const int other = neighbors[t][k];
       fans.open_edges += other < 0;
       if (other < static_cast<int>(t)) continue;
       for (const std::size_t c : {k, (k + 1) % 3}) {
@@ -45,10 +45,10 @@ Fans join_corners(const Triangles& triangles, const Neighbours& neighbours) {
 }
 
 // Pieces of the surface, by the first triangle found.
-Sets join_triangles(const Neighbours& neighbours) {
-  Sets pieces(neighbours.size());
-  for (std::size_t t = 0; t < neighbours.size(); ++t)
-    for (const int other : neighbours[t])
+Sets join_triangles(const Neighbors& neighbors) {
+  Sets pieces(neighbors.size());
+  for (std::size_t t = 0; t < neighbors.size(); ++t)
+    for (const int other : neighbors[t])
       if (other >= 0) pieces.join(t, static_cast<std::size_t>(other));
   return pieces;
 }
@@ -62,13 +62,13 @@ std::size_t count_points(const Triangles& triangles) {
 }  // namespace
 
 Topology measure_topology(const Triangles& triangles) {
-  const Neighbours neighbours = triangle_neighbours(triangles);
-  Fans fans = join_corners(triangles, neighbours);
-  Sets pieces = join_triangles(neighbours);
+  const Neighbors neighbors = triangle_neighbors(triangles);
+  Fans fans = join_corners(triangles, neighbors);
+  Sets pieces = join_triangles(neighbors);
   std::unordered_map<std::size_t, std::size_t> piece_of;  // root triangle -> piece
   std::vector<int> twice;  // 2 · Euler characteristic: a side of a triangle is half an edge
   std::size_t points = 0;
-  for (std::size_t t = 0; t < neighbours.size(); ++t) {
+  for (std::size_t t = 0; t < neighbors.size(); ++t) {
     const auto [at, fresh] = piece_of.try_emplace(pieces.find(t), twice.size());
     if (fresh) twice.push_back(0);
     twice[at->second] += 2 - 3;
@@ -77,7 +77,7 @@ Topology measure_topology(const Triangles& triangles) {
       twice[at->second] += 2;
       ++points;
     }
-    for (const int other : neighbours[t]) twice[at->second] -= other < 0;
+    for (const int other : neighbors[t]) twice[at->second] -= other < 0;
   }
   Topology topology;
   for (const int value : twice) topology.euler.push_back(value / 2);
@@ -88,16 +88,16 @@ Topology measure_topology(const Triangles& triangles) {
 }
 
 std::vector<int> non_manifold_points(const Triangles& triangles) {
-  const Neighbours neighbours = triangle_neighbours(triangles);
-  Fans fans = join_corners(triangles, neighbours);
+  const Neighbors neighbors = triangle_neighbors(triangles);
+  Fans fans = join_corners(triangles, neighbors);
   std::unordered_map<int, std::size_t> fan_of;  // point -> the fan met first
   std::vector<int> found;
-  for (std::size_t t = 0; t < neighbours.size(); ++t)
+  for (std::size_t t = 0; t < neighbors.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const int point = triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k));
       const std::size_t fan = fans.corners.find(3 * t + k);
       const auto [at, fresh] = fan_of.try_emplace(point, fan);
-      if (at->second != fan || neighbours[t][k] < 0) found.push_back(point);
+      if (at->second != fan || neighbors[t][k] < 0) found.push_back(point);
     }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());

@@ -33,7 +33,6 @@ __all__: list[str] = [
     "QpStatus",
     "RateIntegrator",
     "ReferenceSettings",
-    "Trim",
     "Turbine",
     "Weights",
     "bias_forces",
@@ -61,7 +60,6 @@ __all__: list[str] = [
     "potential_energy",
     "simulate_flight",
     "solve_box_qp",
-    "trim_hover",
 ]
 
 class Model:
@@ -158,7 +156,7 @@ class BoxQpResult:
     @property
     def iterations(self) -> int:
         """
-        Cholesky factorisations
+        Cholesky factorizations
         """
     @property
     def kkt_residual(self) -> float:
@@ -175,7 +173,7 @@ class BoxQpResult:
     @property
     def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        (n,) the minimiser
+        (n,) the minimizer
         """
 
 class BoxQpSolver:
@@ -240,7 +238,7 @@ class Integrator:
 
 class ContactPoint:
     """
-    A point whose height is watched.
+    A point monitored for ground contact.
     """
 
     frame: str
@@ -515,9 +513,9 @@ class Weights:
     @posture.setter
     def posture(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def regularisation(self) -> float: ...
-    @regularisation.setter
-    def regularisation(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def regularization(self) -> float: ...
+    @regularization.setter
+    def regularization(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
     def thrust_rate(self) -> float: ...
     @thrust_rate.setter
@@ -704,7 +702,7 @@ class Turbine:
     @property
     def rate_gain(self) -> float:
         """
-        of the feedback linearisation that follows a thrust rate [1/s]
+        of the feedback linearization that follows a thrust rate [1/s]
         """
     @rate_gain.setter
     def rate_gain(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
@@ -1037,7 +1035,7 @@ class FlightStatus:
 
 class FlightObjectives:
     """
-    One family of objectives, to be minimised.
+    One family of objectives, to be minimized.
     """
     @property
     def joint_velocity(self) -> float: ...
@@ -1090,7 +1088,7 @@ class FlightProfile:
     @property
     def terms(self) -> float:
         """
-        kinematics, inertias, mass matrix and its factorisation, Jacobians
+        kinematics, inertias, mass matrix and its factorization, Jacobians
         """
     @property
     def torque(self) -> float:
@@ -1204,7 +1202,7 @@ class FlightLog:
     @property
     def momentum(self) -> numpy.ndarray:
         """
-        (N, 6) linear, angular about the centre of mass
+        (N, 6) linear, angular about the center of mass
         """
     @property
     def momentum_error(self) -> numpy.ndarray:
@@ -1220,7 +1218,7 @@ class FlightLog:
     @property
     def qp_iterations(self) -> numpy.ndarray:
         """
-        (N, 2) factorisations of the momentum and the torque QP
+        (N, 2) factorizations of the momentum and the torque QP
         """
     @property
     def rms(self) -> FlightObjectives: ...
@@ -1279,38 +1277,6 @@ class FlightLog:
         (N, 3) force on the base's origin [N]
         """
 
-class Trim:
-    """
-    A state in which a robot hovers, or how near one came to it.
-    """
-    @property
-    def base_pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
-        """
-        (4, 4)
-        """
-    @property
-    def iterations(self) -> int: ...
-    @property
-    def joints(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        (joints,) inside their ranges [rad]
-        """
-    @property
-    def reached(self) -> bool:
-        """
-        whether the residual is within 1e-9
-        """
-    @property
-    def residual(self) -> float:
-        """
-        largest entry of the force and moment left over [N, N m]
-        """
-    @property
-    def thrusts(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        (actuators,) inside their ranges [N]
-        """
-
 def bias_forces(
     model: Model,
     base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
@@ -1327,7 +1293,7 @@ def center_of_mass(
     s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Centre of mass (3,) in the world [m].
+    Center of mass (3,) in the world [m].
     """
 
 def center_of_mass_jacobian(
@@ -1336,7 +1302,7 @@ def center_of_mass_jacobian(
     s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Jacobian of the centre of mass (3, 6+n).
+    Jacobian of the center of mass (3, 6+n).
     """
 
 def center_of_mass_velocity(
@@ -1346,7 +1312,7 @@ def center_of_mass_velocity(
     nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Velocity of the centre of mass (3,) [m/s].
+    Velocity of the center of mass (3,) [m/s].
     """
 
 def centroidal_momentum(
@@ -1356,7 +1322,7 @@ def centroidal_momentum(
     nu: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Linear and angular momentum about the centre of mass (6,), world axes.
+    Linear and angular momentum about the center of mass (6,), world axes.
     """
 
 def centroidal_momentum_bias(
@@ -1530,7 +1496,7 @@ def locked_inertia(
     s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Inertia (3, 3) of the robot frozen in its posture, about the centre of mass, world axes.
+    Inertia (3, 3) of the robot frozen in its posture, about the center of mass, world axes.
     """
 
 def mass_matrix(
@@ -1562,7 +1528,7 @@ def potential_energy(
     s: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
 ) -> float:
     """
-    [J], zero with the centre of mass at height 0 of the world.
+    [J], zero with the center of mass at height 0 of the world.
     """
 
 def simulate_flight(model: Model, settings: FlightSettings) -> FlightLog:
@@ -1577,23 +1543,7 @@ def solve_box_qp(
     upper: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
 ) -> BoxQpResult:
     """
-    Minimise 0.5 x'Hx + g'x with lower <= x <= upper; H (n, n) symmetric positive definite, bounds may be infinite or equal. Raises ValueError on wrong sizes, NaN, an asymmetric H or crossed bounds; everything else is a status of the result.
-    """
-
-def trim_hover(
-    model: Model,
-    actuators: collections.abc.Sequence[Actuator],
-    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
-    joints: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    *,
-    moving: collections.abc.Sequence[str],
-    joint_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    joint_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    tilt_weight: typing.SupportsFloat | typing.SupportsIndex = 3.0,
-    thrust_weight: typing.SupportsFloat | typing.SupportsIndex = 0.003,
-) -> Trim:
-    """
-    The hover nearest to a wanted state: base attitude, angles of the joints named in `moving` and thrusts that carry the weight without a moment, to 1e-9 N and N m. Least is sum(ds^2) + (tilt_weight tilt)^2 + sum((thrust_weight (T - mean T))^2). joints, joint_lower, joint_upper: (joints,) of the model [rad]. Raises ValueError for what does not fit.
+    Minimize 0.5 x'Hx + g'x with lower <= x <= upper; H (n, n) symmetric positive definite, bounds may be infinite or equal. Raises ValueError on wrong sizes, NaN, an asymmetric H or crossed bounds; everything else is a status of the result.
     """
 
 MAX_URDF_BYTES: int = 67108864

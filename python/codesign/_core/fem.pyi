@@ -17,7 +17,6 @@ __all__: list[str] = [
     "Disc",
     "ExclusionRule",
     "Force",
-    "HistoryPeak",
     "LeftOut",
     "LinearSolver",
     "MAX_QUESTIONS",
@@ -40,7 +39,6 @@ __all__: list[str] = [
     "TIME_LIMIT",
     "TetMesh",
     "Traction",
-    "UnitResponses",
     "boundary_surface",
     "check_surface",
     "default_size",
@@ -65,7 +63,7 @@ __all__: list[str] = [
 
 class SurfaceMesh:
     """
-    Triangles that belong to named faces, in metres.
+    Triangles that belong to named faces, in meters.
 
     Args:
         points: (n, 3) m.
@@ -135,7 +133,7 @@ class SmoothReport:
 
 class MassProperties:
     """
-    Mass, centre of mass and inertia of a solid.
+    Mass, center of mass and inertia of a solid.
     """
     @property
     def com(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
@@ -145,7 +143,7 @@ class MassProperties:
     @property
     def inertia(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
         """
-        (3, 3) kg m² about the centre of mass, axes of the surface
+        (3, 3) kg m² about the center of mass, axes of the surface
         """
     @property
     def mass(self) -> float:
@@ -165,7 +163,7 @@ class SizeSource:
     Args:
         points: (k, 3) m; one row is a point.
         size: edge length within `radius` of the polyline [m].
-        growth: increase of the edge length per metre of distance beyond `radius`.
+        growth: increase of the edge length per meter of distance beyond `radius`.
         radius: m.
     """
     def __init__(
@@ -188,7 +186,7 @@ class SizeField:
     """
     Edge length wanted at each point.
 
-    min(base, size + growth * max(0, distance - radius)) over all sources; metres.
+    min(base, size + growth * max(0, distance - radius)) over all sources; meters.
     """
     def __call__(
         self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]
@@ -474,12 +472,7 @@ class AffineTraction:
     def where(self) -> Selection: ...
 
 class Acceleration:
-    def __init__(
-        self,
-        acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
-        gradient: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"] = ...,
-        point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"] = ...,
-    ) -> None: ...
+    def __init__(self, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
 
 class BodyForce:
     def __init__(self, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]) -> None: ...
@@ -758,67 +751,9 @@ class BucklingModes:
         (3 n, k) columns, the largest node moves 1
         """
 
-class HistoryPeak:
-    """
-    Largest von Mises stress over a history of loads.
-    """
-    @property
-    def instant(self) -> int:
-        """
-        row of the history
-        """
-    @property
-    def pairs(self) -> int:
-        """
-        of a face or element and a block of instants
-        """
-    @property
-    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
-        """
-        (3) m
-        """
-    @property
-    def stress(self) -> float:
-        """
-        Pa
-        """
-    @property
-    def visited(self) -> int:
-        """
-        pairs that no bound ruled out
-        """
-
-class UnitResponses:
-    """
-    Answers of a part to unit loads.
-    """
-    def at(self, factors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> StaticResult:
-        """
-        StaticResult of one instant, factors (units,).
-        """
-    def peak(self, history: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"]) -> HistoryPeak:
-        """
-        Largest von Mises stress over a history (instants, units) of the units' factors.
-        """
-    def stress_at(
-        self,
-        node: typing.SupportsInt | typing.SupportsIndex,
-        history: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (instants, 6) recovered stress at a node, Pa: xx yy zz xy yz zx
-        """
-    @property
-    def mesh(self) -> TetMesh: ...
-    @property
-    def units(self) -> int:
-        """
-        how many unit loads
-        """
-
 class StaticSystem:
     """
-    A model factorised once for many load cases.
+    A model factorized once for many load cases.
     """
     def __init__(
         self, mesh: TetMesh, material: Material, supports: collections.abc.Sequence[Support], settings: StaticSettings
@@ -838,12 +773,6 @@ class StaticSystem:
     def solve(
         self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
     ) -> StaticResult: ...
-    def unit_responses(
-        self,
-        units: collections.abc.Sequence[
-            collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
-        ],
-    ) -> UnitResponses: ...
 
 def boundary_surface(mesh: TetMesh) -> SurfaceMesh:
     """
@@ -903,11 +832,11 @@ def load_surface(
     feature_angle_deg: typing.SupportsFloat | typing.SupportsIndex = 40.0,
 ) -> SurfaceMesh:
     """
-    Closed surface of an STL file, binary or ASCII, in metres.
+    Closed surface of an STL file, binary or ASCII, in meters.
 
     Args:
         path: the file.
-        scale: metres per unit of the file; 1e-3 for millimetres.
+        scale: meters per unit of the file; 1e-3 for millimeters.
         feature_angle_deg: edges sharper than this bound the (unnamed) faces.
 
     Raises:
@@ -922,7 +851,7 @@ def load_vector(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 def mass_properties(surface: SurfaceMesh, density: typing.SupportsFloat | typing.SupportsIndex) -> MassProperties:
     """
-    Mass, centre of mass and inertia of the polyhedron inside a closed surface.
+    Mass, center of mass and inertia of the polyhedron inside a closed surface.
 
     Args:
         surface: closed and outward-oriented.
@@ -949,7 +878,7 @@ def nearest_triangle(
 
 def read_stl(path: os.PathLike | str | bytes, scale: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> SurfaceMesh:
     """
-    The triangles of an STL file as they are, in metres, under one unnamed face: not checked.
+    The triangles of an STL file as they are, in meters, under one unnamed face: not checked.
 
     Raises:
         MeshError: unreadable, truncated, another format, not finite, empty, huge.

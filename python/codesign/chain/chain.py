@@ -95,7 +95,7 @@ def _compute(
     """Meshes and solves the parts; flies the robot if the study has a flight."""
     if config.flight is None:
         start = time.perf_counter()
-        return Computed([_core.analyse_part(case) for case in cases], None, {"fem": time.perf_counter() - start})
+        return Computed([_core.analyze_part(case) for case in cases], None, {"fem": time.perf_counter() - start})
     settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory))
     with refusals(study.path):
         result = _core.evaluate(cases, robot.to_text(), settings)

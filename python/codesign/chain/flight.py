@@ -216,7 +216,7 @@ def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
         joint_velocity=weights.joint_velocity,
         thrust_rate=weights.thrust_rate,
         thrust_symmetry=weights.thrust_symmetry,
-        regularisation=weights.regularization,
+        regularization=weights.regularization,
         torque=weights.torque,
     )
     ranges = np.array([r for group in flight.joint_groups for r in group.ranges_deg]).reshape(-1, 2) * DEGREE

@@ -286,6 +286,6 @@ def confirm(part: Part, settings: StressSettings) -> Confirmation:
     mass = part.mass_properties()
     full = replace(settings, geometry="full", accuracy="converged")
     analyzed, confirmed = (
-        part_document(mass, _core.analyse_part(part_case(part, chosen))) for chosen in (settings, full)
+        part_document(mass, _core.analyze_part(part_case(part, chosen))) for chosen in (settings, full)
     )
     return Confirmation(analyzed, confirmed)

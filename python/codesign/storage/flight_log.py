@@ -50,7 +50,7 @@ class Column:
 def flown_columns(log: dyn.FlightLog, settings: dyn.FlightSettings, slides: Collection[str] = ()) -> list[Column]:
     """All histories of a flight; rotations as quaternions w, x, y, z without jumps of sign.
 
-    slides: joints of the flight that move along their axis, in metres.
+    slides: joints of the flight that move along their axis, in meters.
     Torque, thrust command and wind of a sample act from it to the next one, the thrust of a sample holds at it.
     """
     jets = [jet.frame for jet in settings.actuators]

@@ -43,8 +43,8 @@ inline std::string small_robot() {
                joint("mount", "fixed", "arm", "tool", R"(<origin xyz="0.1 0 0" rpy="0 0 0"/>)"));
 }
 
-// A random tree of links with every kind of joint; link i hangs on one of the four before it.
-// Deterministic. The mirrored robot is its image in the plane y = 0.
+// A random tree of links with every kind of joint; the parent of link i is one of the four before
+// it. Deterministic. The mirrored robot is its image in the plane y = 0.
 inline std::string random_robot(int links, unsigned seed, bool mirrored = false) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -135,7 +135,7 @@ TEST(BoxQp, TenThousandRandomAndAdversarialProblemsMeetTheOptimalityConditions) 
   EXPECT_LE(most_iterations, 200);
 }
 
-TEST(BoxQp, WarmStartFromTheSolutionNeedsOneFactorisation) {
+TEST(BoxQp, WarmStartFromTheSolutionNeedsOneFactorization) {
   std::mt19937_64 random(3);
   BoxQpSolver solver(27);
   const Problem p = make_problem(random, 27, 1);

@@ -24,7 +24,7 @@ TEST(Centroidal, MatrixTimesVelocityIsTheSumOverTheBodies) {
   }
 }
 
-TEST(Centroidal, CentreOfMassMovesWithItsJacobian) {
+TEST(Centroidal, CenterOfMassMovesWithItsJacobian) {
   for (const Model& model : models()) {
     const State state = random_state(model, 2);
     const Sample here(model, state), next(model, moved(model, state, kStep)),

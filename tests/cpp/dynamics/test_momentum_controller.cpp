@@ -61,7 +61,7 @@ class MomentumControllerTest : public ::testing::Test {
                   w.constant_inertia * e.tail<3>().squaredNorm() + w.posture * pull.squaredNorm() +
                   w.joint_velocity * s_dot.squaredNorm() + w.thrust_rate * T.squaredNorm() +
                   w.thrust_symmetry * (std::pow(T[0] - T[1], 2) + std::pow(T[2] - T[3], 2)) +
-                  w.regularisation * u.squaredNorm());
+                  w.regularization * u.squaredNorm());
   }
 
   std::mt19937_64 random_{5};

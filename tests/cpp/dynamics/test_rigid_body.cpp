@@ -20,7 +20,7 @@ TEST(RigidBody, MassMatrixIsSymmetricAndPositiveDefinite) {
 }
 
 TEST(RigidBody, MassMatrixOfAPendulumInClosedForm) {
-  // 2 kg at 0.5 m from the axis, 0.02 kg m² about its own centre.
+  // 2 kg at 0.5 m from the axis, 0.02 kg m² about its own center.
   const Model model =
       load_urdf(robot(link("base") + link("bob", inertial(2.0, "0.5 0 0")) +
                       joint("turn", "revolute", "base", "bob", R"(<axis xyz="0 1 0"/>)")),

@@ -85,7 +85,7 @@ TEST(Urdf, LockedJointsAreLumped) {
   EXPECT_NEAR(model.bodies[0].inertia.com.x(), 0.1 / 3.0, 1e-15);
 }
 
-TEST(Urdf, AxesAreNormalised) {
+TEST(Urdf, AxesAreNormalized) {
   const Model model = load_urdf(replaced(small_robot(), "0 0 1", "0 3 4"));
   const Eigen::Vector3d axis = model.bodies[1].parent_T_body.R.col(2);
   EXPECT_LT((axis - Eigen::Vector3d(0.0, 0.6, 0.8)).norm(), 1e-15);

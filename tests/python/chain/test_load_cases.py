@@ -37,12 +37,12 @@ def case_of(study):
 
 def test_cases_solve_like_each_alone_and_the_one_nearest_to_its_limit_governs(tmp_path):
     study = load_study(study_with(tmp_path / "study", CASES))
-    both = _core.analyse_part(case_of(study))
+    both = _core.analyze_part(case_of(study))
     assert both.case_names == ["thrust", "landing"]
     alone = []
     for name, load in (("a", THRUST), ("b", LANDING)):
         single = load_study(study_with(tmp_path / name, f"cases = [{load}]"))
-        alone.append(_core.analyse_part(case_of(single)).result)
+        alone.append(_core.analyze_part(case_of(single)).result)
     for result, reference in zip(both.results, alone, strict=True):
         np.testing.assert_array_equal(result.displacement, reference.displacement)
         assert result.safety_factor == reference.safety_factor

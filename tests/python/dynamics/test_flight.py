@@ -35,7 +35,7 @@ def test_published_robot_gives_the_published_objectives(shared_data: Path, robot
 
 
 # A sample of the 237 rows that benchmarks/published/flights.py keeps, over all forearm lengths, with indefinite and
-# with definite mass matrices; the published program drops base rotations below 1e-6 rad a step, which 195 and 268 show.
+# with definite mass matrices; the published program drops base rotations below 1e-6 rad per step: rows 195 and 268.
 ROWS = (
     "0 66 195 268 438 490 172 323 488 114 464 280 372 236 350 231 168 257 396 391 65 355 167 491 51".split()  # noqa: SIM905
 )

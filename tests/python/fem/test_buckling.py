@@ -124,7 +124,7 @@ def bar_case(half, count, force=LOAD):
 
 
 def test_a_half_part_has_the_factors_of_the_whole():
-    whole, half = (_core.analyse_part(bar_case(half, 4)).buckling_factors for half in (False, True))
+    whole, half = (_core.analyze_part(bar_case(half, 4)).buckling_factors for half in (False, True))
     assert half == pytest.approx(whole, rel=0.005)
     assert LOAD * half[0] == pytest.approx(euler(0.012, 0.02, 2, length=0.2), rel=0.02)  # antisymmetric
     assert LOAD * half[1] == pytest.approx(euler(0.02, 0.012, 2, length=0.2), rel=0.03)  # symmetric
@@ -133,7 +133,7 @@ def test_a_half_part_has_the_factors_of_the_whole():
 def test_the_part_document_carries_the_factor_if_asked_and_null_if_there_is_none():
     mass = Inertial(1.0, np.zeros(3), np.eye(3))
     pressed, pulled, unasked = (
-        _core.analyse_part(bar_case(half=True, count=count, force=force))
+        _core.analyze_part(bar_case(half=True, count=count, force=force))
         for count, force in ((2, LOAD), (2, -LOAD), (0, LOAD))
     )
     assert part_document(mass, pressed)["buckling_factor"] == pressed.buckling_factors[0]

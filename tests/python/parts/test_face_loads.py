@@ -59,7 +59,7 @@ def test_a_bore_is_loaded_by_a_vector(tmp_path):
     for reach in (200.0, 210.0, 220.0):
         part = study.build_parts({"reach": reach, "height": 30.0})["strut"]
         case = part_case(part, stress_settings(study.config, "strut"))
-        factors.append(_core.analyse_part(case).result.safety_factor)
+        factors.append(_core.analyze_part(case).result.safety_factor)
     assert np.all(np.diff(factors) < 0.0)  # a longer arm is weaker
     assert factors[2] == pytest.approx(factors[0] * 200.0 / 220.0, rel=0.05)
 

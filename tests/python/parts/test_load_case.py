@@ -58,11 +58,11 @@ def part():
 
 def test_refinement_around_the_peak_reaches_the_tolerance_or_says_not(part):
     case = part_case(part, replace(SETTINGS, accuracy="fine"))
-    once = _core.analyse_part(case)
+    once = _core.analyze_part(case)
     assert once.refinements == 0
     assert once.converged == (once.result.stress_error <= 0.05 * once.result.peak_stress)
     case.max_refinements = 2
-    refined = _core.analyse_part(case)
+    refined = _core.analyze_part(case)
     assert refined.converged
     assert refined.stopped == ""
     assert 1 <= refined.refinements <= 2
@@ -72,7 +72,7 @@ def test_refinement_around_the_peak_reaches_the_tolerance_or_says_not(part):
     nominal = 1000.0 / (2e-6 * (HALF_WIDTH - RADIUS) * THICKNESS)
     assert refined.result.peak_stress == pytest.approx(2.51 * nominal, rel=0.06)
     case.tolerance, case.max_refinements = 1e-6, 1
-    strict = _core.analyse_part(case)
+    strict = _core.analyze_part(case)
     assert not strict.converged
     assert "above the tolerance after 1 refinements" in strict.stopped
     peak = np.atleast_2d(once.result.peak_position)
@@ -93,7 +93,7 @@ def test_a_half_part_has_the_frequencies_of_the_whole():
     settings = replace(stress_settings(load_study("ironcub").config, bracket.name), modes=4)
     case = part_case(bracket, settings)
     case.size = fem.SizeField(6e-3)
-    halves = _core.analyse_part(case).frequencies
+    halves = _core.analyze_part(case).frequencies
     mesh = fem.tetrahedralize(surface_mesh(build_solid(bracket.fem_shape(half=False), Resolution(48)).tidied()), 6e-3)
     whole = fem.natural_frequencies(mesh, settings.material, [fem.Support("mount")], count=4).frequency
     assert halves == pytest.approx(whole, rel=0.02)  # a coarse mesh
@@ -136,5 +136,5 @@ def test_no_node_overshoots_where_a_patch_hardly_determines_its_stress():
     """81 MPa beside an edge with 2 MPa, before patches were enlarged."""
     study = load_study("ironcub")
     part = study.build_parts([1, 42, 84, 52])["forearm_support"]
-    result = _core.analyse_part(part_case(part, stress_settings(study.config, "forearm_support"))).result
+    result = _core.analyze_part(part_case(part, stress_settings(study.config, "forearm_support"))).result
     assert result.peak_stress == pytest.approx(32e6, rel=0.05)

@@ -41,7 +41,7 @@ FIGURES = (
         "validation", "Change of each objective on flights that the search has not seen.", robustness.validation
     ),
     FigureKind("stress", "Stress on the parts of the original and the recommended design.", solids.stress),
-    FigureKind("flight", "Flight of the recommended design; grey bands: the pilot commands.", flights.histories),
+    FigureKind("flight", "Flight of the recommended design; gray bands: the pilot commands.", flights.histories),
     FigureKind("snapshots", "The flight of the recommended design at equal times.", solids.snapshots),
     FigureKind("parts", "The parts on the robot: original and recommended.", solids.parts_on_robot),
 )

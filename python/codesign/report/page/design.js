@@ -1,5 +1,5 @@
 /** The selected design: its card beside the chart, its parts in 3-D, its flight. */
-// Light to dark with monotone lightness: a part reads as a lit body, and the order survives color blindness and grey print.
+// Light to dark with monotone lightness: a part reads as a lit body, and the order survives color blindness and gray print.
 const STRESS_SCALE = [[0, '#e3e6e8'], [0.2, '#f4e3a1'], [0.45, '#f2ac42'], [0.7, '#d2601a'], [1, '#7a1616']];
 
 function card(i) {

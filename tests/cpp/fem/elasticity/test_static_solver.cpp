@@ -222,7 +222,7 @@ TEST(StaticSolver, ATurnedPartGivesTheTurnedResult) {
   EXPECT_LT((b.peak_position - turn * a.peak_position).norm(), 1e-6);
 }
 
-TEST(StaticSolver, OneFactorisationServesManyLoadCases) {
+TEST(StaticSolver, OneFactorizationServesManyLoadCases) {
   const TetMesh mesh = beam(2);
   const StaticSystem system(mesh, kSteel, {{kRoot(mesh)}});
   const Force down{kTip(mesh), {0, 0, -100}}, side{kTip(mesh), {0, 50, 0}};

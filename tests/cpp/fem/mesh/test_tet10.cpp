@@ -71,7 +71,7 @@ TEST(Tet10, AQuadraticMapGivesTheExactGradientOfItsCoordinates) {
   }
 }
 
-TEST(Tet10, StraightElementsAreRecognised) {
+TEST(Tet10, StraightElementsAreRecognized) {
   EXPECT_TRUE(is_straight(
       tet_nodes(box_mesh(3, 3, 3, [](const Vector3d& p) -> Vector3d { return 0.1 * p; }), 7)));
   EXPECT_FALSE(is_straight(curved_tet()));

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fem/mesh/mesh_quality.hpp"
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 #include "fem/meshing/linear_tets.hpp"
 
 namespace codesign::fem {
@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-// Labels every side without neighbour with `label`.
+// Labels every side without neighbor with `label`.
 void label_boundary(LinearTets& mesh, int label) {
-  const TetNeighbours neighbours =
-      tet_neighbours(Eigen::Map<const Tets4>(mesh.tets.data()->data(), std::ssize(mesh.tets), 4));
+  const TetNeighbors neighbors =
+      tet_neighbors(Eigen::Map<const Tets4>(mesh.tets.data()->data(), std::ssize(mesh.tets), 4));
   mesh.side_label.assign(mesh.tets.size(), {-1, -1, -1, -1});
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     for (std::size_t k = 0; k < 4; ++k)
-      if (neighbours[t][k] < 0) mesh.side_label[t][k] = label;
+      if (neighbors[t][k] < 0) mesh.side_label[t][k] = label;
 }
 
 // A pyramid of two tetrahedra over a square whose diagonal 1-3 is lower by h than 0-2, and the

@@ -54,7 +54,7 @@ std::vector<Eigen::Vector3d> circle(int n) {
   return ring;
 }
 
-// An octahedron filled from a point inside it, off the centre by `shift` in x and y: the elements
+// An octahedron filled from a point inside it, off the center by `shift` in x and y: the elements
 // on that side become flat.
 Sample octahedron(double shift) {
   Sample sample(circle(4), 1.0);

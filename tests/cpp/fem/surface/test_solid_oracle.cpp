@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The unit cube, two triangles a side, groups 0..5 by side (-x +x -y +y -z +z).
+// The unit cube, two triangles per side, groups 0..5 by side (-x +x -y +y -z +z).
 SurfaceMesh cube() {
   SurfaceMesh surface;
   surface.points.resize(8, 3);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kAngle = 40.0 * M_PI / 180.0;
 
 // A prism over a star-shaped polygon in (x, y), from z = 0 to z = height; faces bottom, top, and
-// one a side.
+// one per side.
 SurfaceMesh prism(const std::vector<Eigen::Vector2d>& outline, double height) {
   const int n = static_cast<int>(outline.size());
   SurfaceMesh surface;

@@ -15,12 +15,12 @@ using Tets4 = Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor>;
 // opposite to corner k.
 inline constexpr int kTetSides[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-// neighbours[t][k]: the tetrahedron across side k of tetrahedron t, or -1 on the boundary. Throws
+// neighbors[t][k]: the tetrahedron across side k of tetrahedron t, or -1 on the boundary. Throws
 // MeshError if three tetrahedra share a side.
-using TetNeighbours = std::vector<std::array<int, 4>>;
-TetNeighbours tet_neighbours(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>>& tets);
+using TetNeighbors = std::vector<std::array<int, 4>>;
+TetNeighbors tet_neighbors(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>>& tets);
 
 // Piece of each tetrahedron (connected through sides), numbered from 0, and the number of pieces.
-std::pair<std::vector<int>, int> find_pieces(const TetNeighbours& neighbours);
+std::pair<std::vector<int>, int> find_pieces(const TetNeighbors& neighbors);
 
 }  // namespace codesign::fem

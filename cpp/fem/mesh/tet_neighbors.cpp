@@ -1,4 +1,4 @@
-#include "fem/mesh/tet_neighbours.hpp"
+#include "fem/mesh/tet_neighbors.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -33,8 +33,8 @@ struct SideTable {
 
 }  // namespace
 
-TetNeighbours tet_neighbours(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>>& tets) {
-  TetNeighbours neighbours(static_cast<std::size_t>(tets.rows()), {-1, -1, -1, -1});
+TetNeighbors tet_neighbors(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>>& tets) {
+  TetNeighbors neighbors(static_cast<std::size_t>(tets.rows()), {-1, -1, -1, -1});
   // Every inner side is met twice: 2 m sides and a few more on the boundary.
   SideTable table(static_cast<std::size_t>(4 * tets.rows()));
   for (int t = 0; t < static_cast<int>(tets.rows()); ++t)
@@ -53,24 +53,24 @@ TetNeighbours tet_neighbours(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride
                         " belongs to more than two tetrahedra");
       slot.paired = true;
       const auto other = static_cast<std::size_t>(slot.owner / 4);
-      neighbours[other][static_cast<std::size_t>(slot.owner % 4)] = t;
-      neighbours[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = slot.owner / 4;
+      neighbors[other][static_cast<std::size_t>(slot.owner % 4)] = t;
+      neighbors[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = slot.owner / 4;
     }
-  return neighbours;
+  return neighbors;
 }
 
-std::pair<std::vector<int>, int> find_pieces(const TetNeighbours& neighbours) {
-  std::vector<int> piece(neighbours.size(), -1);
+std::pair<std::vector<int>, int> find_pieces(const TetNeighbors& neighbors) {
+  std::vector<int> piece(neighbors.size(), -1);
   std::vector<int> stack;
   int pieces = 0;
-  for (std::size_t seed = 0; seed < neighbours.size(); ++seed) {
+  for (std::size_t seed = 0; seed < neighbors.size(); ++seed) {
     if (piece[seed] >= 0) continue;
     piece[seed] = pieces;
     stack.push_back(static_cast<int>(seed));
     while (!stack.empty()) {
       const auto t = static_cast<std::size_t>(stack.back());
       stack.pop_back();
-      for (const int next : neighbours[t]) {
+      for (const int next : neighbors[t]) {
         if (next < 0 || piece[static_cast<std::size_t>(next)] >= 0) continue;
         piece[static_cast<std::size_t>(next)] = pieces;
         stack.push_back(next);
