@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "fem/elasticity/stiffness.hpp"
+#include "fem/la/cholmod_view.hpp"
 #include "model_file.hpp"
 
 extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
@@ -54,22 +55,6 @@ Eigen::VectorXd solve(cholmod_sparse& a, cholmod_factor* factor, Common& common,
   return result;
 }
 
-// A matrix as CHOLMOD sees it.
-cholmod_sparse view(LowerMatrix& matrix) {
-  cholmod_sparse a{};
-  a.nrow = a.ncol = static_cast<std::size_t>(matrix.size());
-  a.nzmax = matrix.row.size();
-  a.p = matrix.start.data();
-  a.i = matrix.row.data();
-  a.x = matrix.value.data();
-  a.stype = -1;
-  a.itype = CHOLMOD_INT;
-  a.xtype = CHOLMOD_REAL;
-  a.dtype = CHOLMOD_DOUBLE;
-  a.sorted = a.packed = 1;
-  return a;
-}
-
 Eigen::VectorXd nodal(const NodePattern& pattern, const Eigen::VectorXd& x) {
   return nodal_columns(pattern, x).col(0);
 }
@@ -83,9 +68,9 @@ int main(int argc, char** argv) {
   const Material material{"steel", 200e9, 0.3, 7800.0, 250e6};
   const NodePattern ordered = fill_reducing_order(model.mesh, model.constraints);
   const NodePattern grouped = order_nodes(model.mesh, model.constraints);
-  LowerMatrix matrix = assemble_stiffness(model.mesh, material, ordered);
-  LowerMatrix grouped_matrix = assemble_stiffness(model.mesh, material, grouped);
-  cholmod_sparse a = view(matrix), grouped_a = view(grouped_matrix);
+  const LowerMatrix matrix = assemble_stiffness(model.mesh, material, ordered);
+  const LowerMatrix grouped_matrix = assemble_stiffness(model.mesh, material, grouped);
+  cholmod_sparse a = cholmod_view(matrix), grouped_a = cholmod_view(grouped_matrix);
   std::vector<int> natural(a.nrow);
   std::iota(natural.begin(), natural.end(), 0);
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "errors.hpp"
+#include "fem/la/cholmod_view.hpp"
 #include "fem/la/symbolic_factor.hpp"
 #include "interrupt.hpp"
 
@@ -86,32 +87,11 @@ struct CholeskyFactor::Data : Workspace {
   ~Data() { cholmod_free_factor(&factor, &common); }
 };
 
-namespace {
-
-// CHOLMOD reads the matrix in place; it never writes to it.
-cholmod_sparse view(const LowerMatrix& a) {
-  cholmod_sparse s{};
-  s.nrow = s.ncol = static_cast<std::size_t>(a.size());
-  s.nzmax = a.row.size();
-  s.p = const_cast<int*>(a.start.data());
-  s.i = const_cast<int*>(a.row.data());
-  s.x = const_cast<double*>(a.value.data());
-  s.stype = -1;
-  s.itype = CHOLMOD_INT;
-  s.xtype = CHOLMOD_REAL;
-  s.dtype = CHOLMOD_DOUBLE;
-  s.sorted = 1;
-  s.packed = 1;
-  return s;
-}
-
-}  // namespace
-
 CholeskyFactor::CholeskyFactor(const NodePattern& pattern, const LowerMatrix& matrix)
     : data_(std::make_unique<Data>()) {
   check_interrupt();
   const OneThread guard;
-  cholmod_sparse a = view(matrix);
+  cholmod_sparse a = cholmod_view(matrix);
   cholmod_common& common = data_->common;
   data_->factor = symbolic_factor(pattern, common);
   double no_shift[2] = {0.0, 0.0};

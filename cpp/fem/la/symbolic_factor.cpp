@@ -15,81 +15,101 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-}  // namespace
-
-cholmod_factor* symbolic_factor(const NodePattern& pattern, cholmod_common& common) {
-  const Supernodes& nodes = pattern.supernodes;
-  const std::size_t n = at(pattern.equations()), count = at(nodes.count());
-  cholmod_factor* l = cholmod_allocate_factor(n, &common);
-  if (l == nullptr) return nullptr;
-  const auto equations_of_rows = [&](int s) {
-    int sum = 0;
-    for (int p = nodes.row_start[at(s)]; p < nodes.row_start[at(s) + 1]; ++p) {
-      const int row = nodes.row[at(p)];
-      sum += pattern.dof_start[at(row) + 1] - pattern.dof_start[at(row)];
-    }
-    return sum;
-  };
-  std::vector<int> super(count + 1), pi(count + 1, 0), px(count + 1, 0), rows;
-  std::vector<int> supernode_of(at(pattern.positions()));
+// The arrays of a supernodal factor: first column, first row index and first entry of each
+// supernode, then the rows of all.
+struct Structure {
+  std::vector<int> super, pi, px, rows;
   std::size_t entries = 0;
-  for (std::size_t s = 0; s < count; ++s) {
-    const int first = nodes.start[s], last = nodes.start[s + 1];
-    for (int k = first; k < last; ++k) supernode_of[at(k)] = static_cast<int>(s);
-    const int columns = pattern.dof_start[at(last)] - pattern.dof_start[at(first)];
-    const int height = columns + equations_of_rows(static_cast<int>(s));
-    super[s] = pattern.dof_start[at(first)];
-    pi[s + 1] = pi[s] + height;
-    entries += static_cast<std::size_t>(height) * at(columns);
-    if (entries > std::numeric_limits<int>::max()) {
-      cholmod_free_factor(&l, &common);
-      common.status = CHOLMOD_TOO_LARGE;
-      return nullptr;
-    }
-    px[s + 1] = static_cast<int>(entries);
-  }
-  super[count] = static_cast<int>(n);
-  rows.reserve(at(pi[count]));
   // Largest update of a later supernode by an earlier one, and most rows below a supernode.
   std::size_t max_update = 1, max_below = 1;
+};
+
+int degrees_of(const NodePattern& pattern, int first, int last) {
+  return pattern.dof_start[at(last)] - pattern.dof_start[at(first)];
+}
+
+// False where there are more entries than CHOLMOD's indices reach.
+bool count_entries(const NodePattern& pattern, Structure& out) {
+  const Supernodes& nodes = pattern.supernodes;
+  const std::size_t count = at(nodes.count());
+  out.super.resize(count + 1);
+  out.pi.assign(count + 1, 0);
+  out.px.assign(count + 1, 0);
   for (std::size_t s = 0; s < count; ++s) {
-    for (int d = super[s]; d < super[s + 1]; ++d) rows.push_back(d);
-    std::size_t below = at(pi[s + 1] - pi[s] - (super[s + 1] - super[s]));
-    max_below = std::max(max_below, below);
+    const int columns = degrees_of(pattern, nodes.start[s], nodes.start[s + 1]);
+    int height = columns;
+    for (int p = nodes.row_start[s]; p < nodes.row_start[s + 1]; ++p)
+      height += degrees_of(pattern, nodes.row[at(p)], nodes.row[at(p)] + 1);
+    out.super[s] = pattern.dof_start[at(nodes.start[s])];
+    out.pi[s + 1] = out.pi[s] + height;
+    out.entries += at(height) * at(columns);
+    if (out.entries > std::numeric_limits<int>::max()) return false;
+    out.px[s + 1] = static_cast<int>(out.entries);
+  }
+  out.super[count] = pattern.equations();
+  return true;
+}
+
+void list_rows(const NodePattern& pattern, Structure& out) {
+  const Supernodes& nodes = pattern.supernodes;
+  const std::size_t count = at(nodes.count());
+  std::vector<int> supernode_of(at(pattern.positions()));
+  for (std::size_t s = 0; s < count; ++s)
+    for (int k = nodes.start[s]; k < nodes.start[s + 1]; ++k)
+      supernode_of[at(k)] = static_cast<int>(s);
+  out.rows.reserve(at(out.pi[count]));
+  for (std::size_t s = 0; s < count; ++s) {
+    for (int d = out.super[s]; d < out.super[s + 1]; ++d) out.rows.push_back(d);
+    std::size_t below = at(out.pi[s + 1] - out.pi[s] - (out.super[s + 1] - out.super[s]));
+    out.max_below = std::max(out.max_below, below);
     int p = nodes.row_start[s];
     while (p < nodes.row_start[s + 1]) {
       const int target = supernode_of[at(nodes.row[at(p)])];
-      std::size_t wide = 0;
+      const std::size_t before = out.rows.size();
       for (; p < nodes.row_start[s + 1] && supernode_of[at(nodes.row[at(p)])] == target; ++p) {
         const int row = nodes.row[at(p)];
-        for (int d = pattern.dof_start[at(row)]; d < pattern.dof_start[at(row) + 1]; ++d) {
-          rows.push_back(d);
-          ++wide;
-        }
+        for (int d = pattern.dof_start[at(row)]; d < pattern.dof_start[at(row) + 1]; ++d)
+          out.rows.push_back(d);
       }
-      max_update = std::max(max_update, wide * below);
+      const std::size_t wide = out.rows.size() - before;
+      out.max_update = std::max(out.max_update, wide * below);
       below -= wide;
     }
   }
-  const auto give = [&](const std::vector<int>& values) {
-    void* memory = cholmod_malloc(values.size(), sizeof(int), &common);
-    if (memory != nullptr) std::copy(values.begin(), values.end(), static_cast<int*>(memory));
-    return memory;
-  };
+}
+
+// A copy in CHOLMOD's own memory, as its factor frees it; null and a status where there is none.
+void* copy_for_cholmod(const std::vector<int>& values, cholmod_common& common) {
+  void* memory = cholmod_malloc(values.size(), sizeof(int), &common);
+  if (memory != nullptr) std::copy(values.begin(), values.end(), static_cast<int*>(memory));
+  return memory;
+}
+
+}  // namespace
+
+cholmod_factor* symbolic_factor(const NodePattern& pattern, cholmod_common& common) {
+  Structure structure;
+  if (!count_entries(pattern, structure)) {
+    common.status = CHOLMOD_TOO_LARGE;
+    return nullptr;
+  }
+  list_rows(pattern, structure);
+  cholmod_factor* l = cholmod_allocate_factor(at(pattern.equations()), &common);
+  if (l == nullptr) return nullptr;
   l->ordering = CHOLMOD_NATURAL;
   l->is_super = 1;
   l->is_ll = 1;
   l->is_monotonic = 1;
   l->xtype = CHOLMOD_PATTERN;
-  l->nsuper = count;
-  l->ssize = rows.size();
-  l->xsize = entries;
-  l->maxcsize = max_update;
-  l->maxesize = max_below;
-  l->super = give(super);
-  l->pi = give(pi);
-  l->px = give(px);
-  l->s = give(rows);
+  l->nsuper = at(pattern.supernodes.count());
+  l->ssize = structure.rows.size();
+  l->xsize = structure.entries;
+  l->maxcsize = structure.max_update;
+  l->maxesize = structure.max_below;
+  l->super = copy_for_cholmod(structure.super, common);
+  l->pi = copy_for_cholmod(structure.pi, common);
+  l->px = copy_for_cholmod(structure.px, common);
+  l->s = copy_for_cholmod(structure.rows, common);
   if (common.status != CHOLMOD_OK) cholmod_free_factor(&l, &common);
   return l;
 }

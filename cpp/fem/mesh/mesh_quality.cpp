@@ -8,6 +8,7 @@
 
 #include "fem/mesh/tet10.hpp"
 #include "fem/mesh/tet_neighbors.hpp"
+#include "fem/surface/connected_groups.hpp"
 
 namespace codesign::fem {
 namespace {
@@ -23,7 +24,7 @@ double signed_volume(const TetMesh& mesh, Eigen::Index t) {
 }  // namespace
 
 int count_pieces(const TetMesh& mesh) {
-  return find_pieces(tet_neighbors(mesh.tets.leftCols<4>())).second;
+  return connected_groups(tet_neighbors(mesh.tets.leftCols<4>())).second;
 }
 
 Eigen::Matrix<double, 6, 1> dihedral_angles(const Eigen::Vector3d& a, const Eigen::Vector3d& b,

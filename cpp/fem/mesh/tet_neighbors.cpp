@@ -59,26 +59,4 @@ TetNeighbors tet_neighbors(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>
   return neighbors;
 }
 
-std::pair<std::vector<int>, int> find_pieces(const TetNeighbors& neighbors) {
-  std::vector<int> piece(neighbors.size(), -1);
-  std::vector<int> stack;
-  int pieces = 0;
-  for (std::size_t seed = 0; seed < neighbors.size(); ++seed) {
-    if (piece[seed] >= 0) continue;
-    piece[seed] = pieces;
-    stack.push_back(static_cast<int>(seed));
-    while (!stack.empty()) {
-      const auto t = static_cast<std::size_t>(stack.back());
-      stack.pop_back();
-      for (const int next : neighbors[t]) {
-        if (next < 0 || piece[static_cast<std::size_t>(next)] >= 0) continue;
-        piece[static_cast<std::size_t>(next)] = pieces;
-        stack.push_back(next);
-      }
-    }
-    ++pieces;
-  }
-  return {piece, pieces};
-}
-
 }  // namespace codesign::fem

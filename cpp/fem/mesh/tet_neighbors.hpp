@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <utility>
 #include <vector>
 
 #include "fem/mesh/tet_mesh.hpp"
@@ -19,8 +18,5 @@ inline constexpr int kTetSides[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 
 // MeshError if three tetrahedra share a side.
 using TetNeighbors = std::vector<std::array<int, 4>>;
 TetNeighbors tet_neighbors(const Eigen::Ref<const Tets4, 0, Eigen::OuterStride<>>& tets);
-
-// Piece of each tetrahedron (connected through sides), numbered from 0, and the number of pieces.
-std::pair<std::vector<int>, int> find_pieces(const TetNeighbors& neighbors);
 
 }  // namespace codesign::fem

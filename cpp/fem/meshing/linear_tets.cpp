@@ -9,6 +9,7 @@
 #include "fem/mesh/mesh_quality.hpp"
 #include "fem/mesh/tet10.hpp"
 #include "fem/mesh/tet_topology.hpp"
+#include "fem/surface/connected_groups.hpp"
 #include "fem/surface/edge_key.hpp"
 
 namespace codesign::fem {
@@ -20,18 +21,6 @@ TetNeighbors neighbors_of(const LinearTets& mesh) {
 
 const Eigen::Vector3d& corner_of(const LinearTets& mesh, std::size_t t, std::size_t k) {
   return mesh.points[static_cast<std::size_t>(mesh.tets[t][k])];
-}
-
-// Keeps the tetrahedra for which keep[t] holds.
-void keep_only(LinearTets& mesh, const std::vector<bool>& keep) {
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    if (!keep[t]) continue;
-    mesh.tets[kept] = mesh.tets[t];
-    mesh.side_label[kept++] = mesh.side_label[t];
-  }
-  mesh.tets.resize(kept);
-  mesh.side_label.resize(kept);
 }
 
 // How many boundary sides meet at each edge of the boundary.
@@ -78,6 +67,17 @@ bool find_flat(const LinearTets& mesh, std::size_t t, double flat_angle, double 
 
 }  // namespace
 
+void keep_only(LinearTets& mesh, const std::vector<bool>& keep) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (!keep[t]) continue;
+    mesh.tets[kept] = mesh.tets[t];
+    mesh.side_label[kept++] = mesh.side_label[t];
+  }
+  mesh.tets.resize(kept);
+  mesh.side_label.resize(kept);
+}
+
 int peel_flat_tets(LinearTets& mesh, double flat_angle, double straight_angle) {
   TetNeighbors neighbors = neighbors_of(mesh);
   BoundaryEdges edges;
@@ -113,7 +113,7 @@ int peel_flat_tets(LinearTets& mesh, double flat_angle, double straight_angle) {
 }
 
 int remove_crumbs(LinearTets& mesh, double fraction) {
-  const auto [piece, pieces] = find_pieces(neighbors_of(mesh));
+  const auto [piece, pieces] = connected_groups(neighbors_of(mesh));
   if (pieces <= 1) return 0;
   std::vector<double> volume(static_cast<std::size_t>(pieces), 0.0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {

@@ -18,6 +18,9 @@ struct LinearTets {
   std::vector<std::array<int, 4>> side_label;  // of the side opposite to each corner; -1 inside
 };
 
+// Keeps the tetrahedra for which keep[t] holds, in their order; all points stay.
+void keep_only(LinearTets& mesh, const std::vector<bool>& keep);
+
 // Removes flat tetrahedra that lie on the boundary with two sides of one label: such an element has
 // no volume worth mentioning but falsifies stiffness and stress. A tetrahedron goes if one of its
 // dihedral angles is below `flat_angle`, two of its sides are boundary sides of the same label that

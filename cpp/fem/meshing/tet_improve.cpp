@@ -66,7 +66,7 @@ class Improver {
       if (!changed) break;
     }
     const auto left = static_cast<int>(find_bad().size());
-    compact();
+    keep_only(mesh_, alive_);
     return left;
   }
 
@@ -260,17 +260,6 @@ class Improver {
     if (i < 6) return (i % 2 ? -1.0 : 1.0) * Vector3d::Unit(i / 2);
     const int j = i - 6;
     return Vector3d(j & 1 ? 1 : -1, j & 2 ? 1 : -1, j & 4 ? 1 : -1) / std::sqrt(3.0);
-  }
-
-  void compact() {
-    std::size_t kept = 0;
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      if (!alive_[t]) continue;
-      mesh_.tets[kept] = mesh_.tets[t];
-      mesh_.side_label[kept++] = mesh_.side_label[t];
-    }
-    mesh_.tets.resize(kept);
-    mesh_.side_label.resize(kept);
   }
 
   LinearTets& mesh_;

@@ -9,38 +9,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "fem/surface/connected_groups.hpp"
 #include "fem/surface/edge_key.hpp"
 
 namespace codesign::fem {
 namespace {
 
 constexpr double kCornerCosine = 0.7071067811865476;  // lines are cut where they turn by 45°
-
-// Groups of triangles connected through edges for which `joined(t, k)` holds; numbered in the order
-// of their first triangle.
-template <class Joined>
-std::pair<std::vector<int>, int> connected_groups(const Neighbors& neighbors, Joined joined) {
-  std::vector<int> group(neighbors.size(), -1);
-  std::vector<int> stack;
-  int groups = 0;
-  for (std::size_t seed = 0; seed < neighbors.size(); ++seed) {
-    if (group[seed] >= 0) continue;
-    group[seed] = groups;
-    stack.push_back(static_cast<int>(seed));
-    while (!stack.empty()) {
-      const auto t = static_cast<std::size_t>(stack.back());
-      stack.pop_back();
-      for (int k = 0; k < 3; ++k) {
-        const int other = neighbors[t][static_cast<std::size_t>(k)];
-        if (other < 0 || group[static_cast<std::size_t>(other)] >= 0 || !joined(t, k)) continue;
-        group[static_cast<std::size_t>(other)] = groups;
-        stack.push_back(other);
-      }
-    }
-    ++groups;
-  }
-  return {group, groups};
-}
 
 }  // namespace
 
@@ -91,10 +66,8 @@ Patches find_patches(const SurfaceMesh& surface, double feature_angle) {
           patches.neighbors[t][static_cast<std::size_t>(k)] >= 0 && !smooth(t, k);
   int count = 0;
   std::tie(patches.of_triangle, count) = connected_groups(
-      patches.neighbors,
-      [&](std::size_t t, int k) { return !patches.line[t][static_cast<std::size_t>(k)]; });
-  std::tie(patches.shell, patches.shells) =
-      connected_groups(patches.neighbors, [](std::size_t, int) { return true; });
+      patches.neighbors, [&](std::size_t t, std::size_t k) { return !patches.line[t][k]; });
+  std::tie(patches.shell, patches.shells) = connected_groups(patches.neighbors);
   patches.face.assign(static_cast<std::size_t>(count), 0);
   for (std::size_t t = 0; t < patches.of_triangle.size(); ++t)
     patches.face[static_cast<std::size_t>(patches.of_triangle[t])] = surface.face[t];

@@ -16,6 +16,7 @@ __all__: list[str] = [
     "LoadCase",
     "PartAnalysis",
     "PartCase",
+    "VaryingCase",
     "analyze_part",
     "dynamics",
     "evaluate",
@@ -45,6 +46,28 @@ class LoadCase:
     ) -> list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]: ...
     @property
     def name(self) -> str: ...
+
+class VaryingCase:
+    """
+    Unit loads whose factors vary over time.
+    """
+    def __init__(
+        self,
+        name: str,
+        units: collections.abc.Sequence[
+            collections.abc.Sequence[
+                fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce
+            ]
+        ],
+    ) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def units(
+        self,
+    ) -> list[
+        list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]
+    ]: ...
 
 class PartCase:
     """
@@ -103,6 +126,13 @@ class PartCase:
         """
     @tolerance.setter
     def tolerance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def varying(self) -> list[VaryingCase]:
+        """
+        VaryingCase
+        """
+    @varying.setter
+    def varying(self, arg0: collections.abc.Sequence[VaryingCase]) -> None: ...
 
 class PartAnalysis:
     """
@@ -141,6 +171,11 @@ class PartAnalysis:
     def mesh_seconds(self) -> float: ...
     @property
     def refinements(self) -> int: ...
+    @property
+    def responses(self) -> list[fem.UnitResponses]:
+        """
+        UnitResponses of each varying case
+        """
     @property
     def result(self) -> fem.StaticResult:
         """

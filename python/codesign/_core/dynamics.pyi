@@ -33,6 +33,7 @@ __all__: list[str] = [
     "QpStatus",
     "RateIntegrator",
     "ReferenceSettings",
+    "Trim",
     "Turbine",
     "Weights",
     "bias_forces",
@@ -60,6 +61,7 @@ __all__: list[str] = [
     "potential_energy",
     "simulate_flight",
     "solve_box_qp",
+    "trim_hover",
 ]
 
 class Model:
@@ -1277,6 +1279,38 @@ class FlightLog:
         (N, 3) force on the base's origin [N]
         """
 
+class Trim:
+    """
+    A state in which a robot hovers, or how near one came to it.
+    """
+    @property
+    def base_pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
+        """
+        (4, 4)
+        """
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def joints(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) inside their ranges [rad]
+        """
+    @property
+    def reached(self) -> bool:
+        """
+        whether the residual is within 1e-9
+        """
+    @property
+    def residual(self) -> float:
+        """
+        largest entry of the force and moment left over [N, N m]
+        """
+    @property
+    def thrusts(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (actuators,) inside their ranges [N]
+        """
+
 def bias_forces(
     model: Model,
     base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
@@ -1544,6 +1578,22 @@ def solve_box_qp(
 ) -> BoxQpResult:
     """
     Minimize 0.5 x'Hx + g'x with lower <= x <= upper; H (n, n) symmetric positive definite, bounds may be infinite or equal. Raises ValueError on wrong sizes, NaN, an asymmetric H or crossed bounds; everything else is a status of the result.
+    """
+
+def trim_hover(
+    model: Model,
+    actuators: collections.abc.Sequence[Actuator],
+    base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+    joints: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    *,
+    moving: collections.abc.Sequence[str],
+    joint_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    joint_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    tilt_weight: typing.SupportsFloat | typing.SupportsIndex = 3.0,
+    thrust_weight: typing.SupportsFloat | typing.SupportsIndex = 0.003,
+) -> Trim:
+    """
+    The hover nearest to a wanted state: base attitude, angles of the joints named in `moving` and thrusts that carry the weight without a moment, to 1e-9 N and N m. Least is sum(ds^2) + (tilt_weight tilt)^2 + sum((thrust_weight (T - mean T))^2). joints, joint_lower, joint_upper: (joints,) of the model [rad]. Raises ValueError for what does not fit.
     """
 
 MAX_URDF_BYTES: int = 67108864

@@ -17,6 +17,7 @@ __all__: list[str] = [
     "Disc",
     "ExclusionRule",
     "Force",
+    "HistoryPeak",
     "LeftOut",
     "LinearSolver",
     "MAX_QUESTIONS",
@@ -39,6 +40,7 @@ __all__: list[str] = [
     "TIME_LIMIT",
     "TetMesh",
     "Traction",
+    "UnitResponses",
     "boundary_surface",
     "check_surface",
     "default_size",
@@ -472,7 +474,12 @@ class AffineTraction:
     def where(self) -> Selection: ...
 
 class Acceleration:
-    def __init__(self, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    def __init__(
+        self,
+        acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        gradient: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"] = ...,
+        point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"] = ...,
+    ) -> None: ...
 
 class BodyForce:
     def __init__(self, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]) -> None: ...
@@ -751,6 +758,64 @@ class BucklingModes:
         (3 n, k) columns, the largest node moves 1
         """
 
+class HistoryPeak:
+    """
+    Largest von Mises stress over a history of loads.
+    """
+    @property
+    def instant(self) -> int:
+        """
+        row of the history
+        """
+    @property
+    def pairs(self) -> int:
+        """
+        of a face or element and a block of instants
+        """
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3) m
+        """
+    @property
+    def stress(self) -> float:
+        """
+        Pa
+        """
+    @property
+    def visited(self) -> int:
+        """
+        pairs that no bound ruled out
+        """
+
+class UnitResponses:
+    """
+    Answers of a part to unit loads.
+    """
+    def at(self, factors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> StaticResult:
+        """
+        StaticResult of one instant, factors (units,).
+        """
+    def peak(self, history: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"]) -> HistoryPeak:
+        """
+        Largest von Mises stress over a history (instants, units) of the units' factors.
+        """
+    def stress_at(
+        self,
+        node: typing.SupportsInt | typing.SupportsIndex,
+        history: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (instants, 6) recovered stress at a node, Pa: xx yy zz xy yz zx
+        """
+    @property
+    def mesh(self) -> TetMesh: ...
+    @property
+    def units(self) -> int:
+        """
+        how many unit loads
+        """
+
 class StaticSystem:
     """
     A model factorized once for many load cases.
@@ -773,6 +838,12 @@ class StaticSystem:
     def solve(
         self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
     ) -> StaticResult: ...
+    def unit_responses(
+        self,
+        units: collections.abc.Sequence[
+            collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
+        ],
+    ) -> UnitResponses: ...
 
 def boundary_surface(mesh: TetMesh) -> SurfaceMesh:
     """

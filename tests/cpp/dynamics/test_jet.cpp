@@ -19,7 +19,7 @@ double acceleration(const Turbine& t, const ThrustState& s, double U) {
   return turbine_drift(t, s) + turbine_gain(t, s) * (U + t.B_UU * U * U);
 }
 
-TEST(Turbine, ThrottleLinearisesTheDynamicsWithinItsRange) {
+TEST(Turbine, ThrottleLinearizesTheDynamicsWithinItsRange) {
   Turbine t = p220();
   t.rate_gain = 5.0;
   for (const ThrustState s : {ThrustState{175.0, 0.0}, {100.0, 20.0}, {200.0, -5.0}}) {

@@ -83,7 +83,7 @@ class TorqueControllerTest : public ::testing::TestWithParam<bool> {
   }
 };
 
-TEST_P(TorqueControllerTest, SolvesTheRegularisedLeastSquaresWithinTheLimits) {
+TEST_P(TorqueControllerTest, SolvesTheRegularizedLeastSquaresWithinTheLimits) {
   std::mt19937_64 random(3);
   for (const double limit : {1e9, 2.0}) {
     limit_ = settings_.limits.torque = limit;

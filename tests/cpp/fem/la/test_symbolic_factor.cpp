@@ -5,6 +5,7 @@
 
 #include "box_mesh.hpp"
 #include "fem/elasticity/stiffness.hpp"
+#include "fem/la/cholmod_view.hpp"
 #include "fem/la/symbolic_factor.hpp"
 
 namespace codesign::fem {
@@ -37,16 +38,7 @@ struct Problem {
     }
     pattern = order_nodes(mesh, constraints, method);
     matrix = assemble_stiffness(mesh, {"steel", 200e9, 0.3, 7800.0, 250e6}, pattern);
-    view.nrow = view.ncol = static_cast<std::size_t>(matrix.size());
-    view.nzmax = matrix.row.size();
-    view.p = matrix.start.data();
-    view.i = matrix.row.data();
-    view.x = matrix.value.data();
-    view.stype = -1;
-    view.itype = CHOLMOD_INT;
-    view.xtype = CHOLMOD_REAL;
-    view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = view.packed = 1;
+    view = cholmod_view(matrix);
   }
 };
 

@@ -33,7 +33,7 @@ TEST(FeatureCurve, WalksAClosedLineBothWays) {
   EXPECT_TRUE(curve.point_at({0.5, 0, 0}, -1.0).isApprox(Vector3d(0, 0.5, 0)));
 }
 
-TEST(FeatureCurve, RecognisesThePointsItHandedOut) {
+TEST(FeatureCurve, RecognizesThePointsItHandedOut) {
   const FeatureCurve curve = square();
   const Vector3d p = curve.point_at({0, 0, 0}, M_PI);
   EXPECT_EQ(curve.position(p), M_PI);  // bit by bit: no projection in between
