@@ -64,11 +64,11 @@ def optimize(
     Args:
         study: a loaded study, or a shipped study's name or the path of a study file.
         out: folder of the run; must not hold one yet.
-        population, generations, seed, algorithm: as in the study's [optimizer] unless given; the seed decides
-            everything that is random.
+        population, generations, seed: as in the study's [optimizer] unless given; the seed decides everything that
+            is random.
         evaluations: the budget itself, instead of population times generations.
-        algorithm: surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an installed package gives
-            in its entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
+        algorithm: the study's unless given: surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an
+            installed package gives in its entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
         start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
         first: designs to evaluate at the head of the start population.
         steady: offspring without waiting for whole generations; `lag` designs unranked at most (default: population).
@@ -81,9 +81,7 @@ def optimize(
     Raises: StoreError (folder holds a run, is being written, disk full), ExecutionError (workers do not start),
         ValueError (wrong settings), KeyboardInterrupt (Ctrl-C: nothing stored is lost, `resume` continues).
     """
-    study = load_problem(study)
-    if why := getattr(study, "grounded", None):
-        raise StudyError(f"{study.source}: {why}; `codesign check` tells more")
+    study = _able_to_fly(load_problem(study))
     optimizer = study.optimizer
     size = optimizer.population if population is None else population
     algorithm = _own_algorithm(study) if algorithm is None else algorithm
@@ -103,6 +101,12 @@ def optimize(
         options=dict(options or {}),
     )
     return run_search(study, settings, out, **resources)
+
+
+def _able_to_fly(study: Problem) -> Problem:
+    if why := getattr(study, "grounded", None):
+        raise StudyError(f"{study.source}: {why}; `codesign check` tells more")
+    return study
 
 
 def _own_algorithm(study: Problem) -> str:

@@ -54,4 +54,4 @@ def test_no_declared_package_is_skipped_when_it_is_missing():
     skipping = re.compile(r'importorskip\("(\w+)')
     found = {name for file in (REPOSITORY / "tests").rglob("*.py") for name in skipping.findall(file.read_text())}
     large = {"pydrake", "build123d"}  # `make test-consumers` installs these
-    assert found <= {"numba", "lxml", "jsonschema"} | large
+    assert found <= {"numba", "lxml"} | large

@@ -5,6 +5,7 @@ import json
 import tomllib
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 from codesign.study import new_study
@@ -42,7 +43,6 @@ def test_units_are_those_that_the_keys_say(key, expected):
 
 @pytest.mark.parametrize("study", ["ironcub", "gimbal_quad", "hexarotor"])
 def test_shipped_studies_match_the_schema_and_a_misspelt_key_does_not(study):
-    jsonschema = pytest.importorskip("jsonschema")
     schema = json.loads(json.dumps(study_schema()))
     jsonschema.Draft202012Validator.check_schema(schema)
     raw = json.loads(json.dumps(tomllib.loads((STUDIES / study / "study.toml").read_text())))
