@@ -68,7 +68,8 @@ def optimize(
             is random.
         evaluations: the budget itself, instead of population times generations.
         algorithm: the study's unless given: surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an
-            installed package gives in its entry points `codesign.searches`; or `module:attribute`, a `codesign.search.registry.SearchKind`.
+            installed package gives in its entry points `codesign.searches`; or `module:attribute`, a
+            `codesign.search.registry.SearchKind`.
         start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
         first: designs to evaluate at the head of the start population.
         steady: offspring without waiting for whole generations; `lag` designs unranked at most (default: population).
