@@ -254,6 +254,35 @@ class RobotDescription:
         xml.extend(elements)
         return RobotDescription(self.root_link, self.directory, xml)
 
+    def with_link(
+        self, name: str, joint: str, parent: str, parent_T_link: ArrayLike, inertial: Inertial | None = None
+    ) -> RobotDescription:
+        """The robot with one more link, held by a fixed joint at `parent_T_link` (4, 4) of the link `parent`.
+
+        Raises: UrdfError: a name is taken, there is no such parent, or the inertial is not physical.
+        """
+        self.link(parent)
+        if name in self._links or joint in self._joints:
+            raise UrdfError(f"the robot has a link {name!r} or a joint {joint!r} already")
+        xml = copy.copy(self._xml)
+        link = ET.SubElement(xml, "link", name=name)
+        if inertial is not None:
+            inertial.require_physical(name)
+            link.append(_inertial_element(inertial))
+        fixed = ET.SubElement(xml, "joint", name=joint, type="fixed")
+        fixed.append(_origin_element(require_pose(parent_T_link, f"origin of joint {joint}")))
+        ET.SubElement(fixed, "parent", link=parent)
+        ET.SubElement(fixed, "child", link=name)
+        return RobotDescription(self.root_link, self.directory, xml)
+
+    def hung_from(self, joint: str, parent: str, parent_T_child: ArrayLike) -> RobotDescription:
+        """The robot with a joint that hangs from another link. Raises: UrdfError: no such joint or link."""
+        self.link(parent)
+        moved = self.set_joint_origin(joint, parent_T_child)
+        element = moved._copied("joint", joint)
+        _replace(element, "parent", ET.Element("parent", link=parent))
+        return moved._with(element)
+
     # ---- writing
 
     def to_text(self) -> str:

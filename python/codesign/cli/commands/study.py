@@ -9,20 +9,43 @@ import typer
 
 from codesign.cli.console import out, print_json
 from codesign.cli.options import DEFAULT_STUDY, JsonOption
+from codesign.errors import StudyError
 
 commands = typer.Typer()
 
 
 @commands.command(
-    epilog="Example: `codesign new my_study && codesign evaluate --study my_study --set reach=200 --set height=30`"
+    epilog="Example: `codesign new my_study && codesign evaluate --study my_study --set reach=200 --set height=30`, "
+    "or `codesign new dog --urdf go1.urdf --mount FL_thigh,FR_thigh,RL_thigh,RR_thigh`"
 )
-def new(folder: Annotated[Path, typer.Argument(help="New folder for the study.")]) -> int:
-    """Writes a commented, runnable study to start from."""
+def new(
+    folder: Annotated[Path, typer.Argument(help="New folder for the study.")],
+    urdf: Annotated[Path | None, typer.Option(help="A robot that is to fly; without it, a shipped study.")] = None,
+    jets: Annotated[str, typer.Option(help="Links of it that push, by commas; default: a multirotor's, by name.")] = "",
+    mount: Annotated[str, typer.Option(help="Links that get an arm with a jet each, by commas.")] = "",
+    count: Annotated[int, typer.Option(min=1, max=32, help="Jets around it, if neither is given or found.")] = 6,
+) -> int:
+    """Writes a commented, runnable study to start from: a shipped one, or jets on arms for a robot of yours."""
     from codesign.study import new_study
+    from codesign.study.own_robot import study_of_robot
 
-    for path in new_study(folder):
+    if urdf is None:
+        if jets or mount:
+            raise StudyError("--jets and --mount name links of the robot that --urdf gives")
+        files = new_study(folder)
+    else:
+        written = study_of_robot(folder, urdf, _names(jets), _names(mount), count)
+        files = written.files
+        for note in written.notes:
+            out.print(note, soft_wrap=True, highlight=False)
+    for path in files:
         out.print(str(path), soft_wrap=True, highlight=False)
+    out.print(f"next: codesign check {folder}", soft_wrap=True, highlight=False)
     return 0
+
+
+def _names(given: str) -> list[str]:
+    return [name.strip() for name in given.split(",") if name.strip()]
 
 
 @commands.command(epilog="Example: `codesign check my_study --time`")
