@@ -153,8 +153,8 @@ def _flown(
     if flight is None:
         return {"flight": {}, "objective_families": {}}
     clearances = _clearances(config, parts, robot, flight)
-    name, wanted = trajectory or config.flown.trajectory, config.flown.duration_s
-    document = flight_document(name, flight, wanted, result.seconds["flight"])
+    name = trajectory or config.flown.trajectory
+    document = flight_document(name, flight, config.flown, result.seconds["flight"])
     return {
         "flight": document | ({"interference": clearances} if clearances else {}),
         "objective_families": objective_families(flight) if flight.completed else {},

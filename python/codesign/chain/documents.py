@@ -8,8 +8,10 @@ from operator import attrgetter
 from typing import Any
 
 from codesign import dynamics as dyn
+from codesign.chain.saturation import saturation
 from codesign.problem.quantities import FAMILY
 from codesign.study.config import StudyConfig
+from codesign.study.flight_config import FlightConfig
 
 # Numbers of a flight in its document, SI units, None where they are not finite: name -> function of the log with its
 # histories. An objective or a constraint names them by path, `flight.max_torque`.
@@ -30,22 +32,23 @@ def objective_families(log: dyn.FlightLog) -> dict[str, dict[str, float]]:
     return families
 
 
-def flight_document(trajectory: str, log: dyn.FlightLog, wanted: float, seconds: float) -> dict[str, Any]:
+def flight_document(trajectory: str, log: dyn.FlightLog, flight: FlightConfig, seconds: float) -> dict[str, Any]:
     """Tracking figures of a flight for JSON, SI units; None for a number that is not finite.
 
-    wanted: duration of the whole flight [s]; missed_share is the part of it that a lost flight did not last.
+    flight: its settings; missed_share is the part of the whole duration that a lost flight did not last.
     seconds: processor time.
     """
     document: dict[str, Any] = {"trajectory": trajectory, "duration": (log.samples - 1) * log.step}
     for name, number in FLIGHT_NUMBERS.items():
         value = number(log)
         document[name] = value if math.isfinite(value) else None
+    document["saturation"] = saturation(log, flight)
     document["ground_touched"] = bool(log.ground_touched)
     document["qp_failures"] = log.qp_failures
     document["completed"] = log.completed
     document["missed_share"] = 0.0
     if not document["completed"]:
-        document["missed_share"] = max(1.0 - (log.failure_time or 0.0) / wanted, SHORTEST_MISS)
+        document["missed_share"] = max(1.0 - (log.failure_time or 0.0) / flight.duration_s, SHORTEST_MISS)
         document["failure_time"] = log.failure_time
         document["failure_reason"] = log.failure_reason
     document["seconds"] = seconds

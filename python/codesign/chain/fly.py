@@ -40,7 +40,7 @@ def fly_robot(
         log = dyn.simulate_flight(model, settings)
     end = time.perf_counter()
     completed = log.completed
-    document = flight_document(trajectory or config.flown.trajectory, log, config.flown.duration_s, end - loaded)
+    document = flight_document(trajectory or config.flown.trajectory, log, config.flown, end - loaded)
     return {
         "robot": str(robot),
         "status": "completed" if completed else "lost",

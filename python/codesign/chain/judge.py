@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from codesign.chain.saturation import explanation
 from codesign.errors import StudyError
 from codesign.problem.evaluation import Status
 from codesign.problem.quantities import FAMILY, MINUS, Quantity, quantity, read
@@ -181,4 +182,5 @@ def _missed(limit: Limit, label: str, value: float | None) -> str:
 
 def loss(flight: Mapping[str, Any]) -> str:
     """Why a flight was lost, in words."""
-    return f"flight lost at {flight['failure_time']:.2f} s: {flight['failure_reason']}"
+    why = explanation(flight.get("saturation", {}))
+    return f"flight lost at {flight['failure_time']:.2f} s: {flight['failure_reason']}" + (f"; {why}" if why else "")

@@ -64,8 +64,7 @@ def optimize(
     Args:
         study: a loaded study, or a shipped study's name or the path of a study file.
         out: folder of the run; must not hold one yet.
-        population, generations, seed: as in the study's [optimizer] unless given; the seed decides everything that
-            is random.
+        population, generations, seed: as in the study's [optimizer] unless given; the seed decides what is random.
         evaluations: the budget itself, instead of population times generations.
         algorithm: the study's unless given: surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an
             installed package gives in its entry points `codesign.searches`; or `module:attribute`, a

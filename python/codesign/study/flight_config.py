@@ -70,7 +70,7 @@ class ReferencesConfig(Section, frozen=True, kw_only=True):
 
 
 class GainsConfig(Section, frozen=True, kw_only=True):
-    """Controller gains; docs/flight.md gives the control law."""
+    """Controller gains; docs/control.md gives the control law, `codesign tune` proposes them."""
 
     linear_proportional: NonNegative
     linear_derivative: NonNegative

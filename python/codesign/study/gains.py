@@ -1,4 +1,4 @@
-"""Gains of the momentum controller from wanted bandwidths, and back. The law is in docs/flight.md.
+"""Gains of the momentum controller from wanted bandwidths, and back. The law is in docs/control.md.
 
 Linearized about a hover, with thrusts that follow, the errors of position and of each principal attitude obey
 

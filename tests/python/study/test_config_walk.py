@@ -225,7 +225,7 @@ def fly(study: Study) -> None:
                 settings.duration = 10.0 * settings.step
             model = dyn.load_urdf(study.base_robot.to_text(), joints=joint_names(config.flight))
             log = dyn.simulate_flight(model, settings)
-            document = flight_document(name, log, config.flight.duration_s, 0.0)
+            document = flight_document(name, log, config.flight, 0.0)
             json.dumps([document, objective_families(log)], allow_nan=False)
 
 

@@ -76,7 +76,8 @@ def fly(
         for family, values in result["objective_families"].items():
             for key, value in values.items():
                 table.add_row(f"{family} {key}", f"{value:.8g}")
-        for key, value in result["flight"].items():
+        flight = dict(result["flight"])
+        for key, value in (flight | flight.pop("saturation")).items():
             table.add_row(key, shown(value))
         out.print(table)
     return 0 if result["status"] == "completed" else 1

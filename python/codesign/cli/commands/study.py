@@ -1,4 +1,4 @@
-"""Commands about studies: new, check, schema."""
+"""Commands about studies: new, check, tune, schema."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from codesign.cli.console import out, print_json
-from codesign.cli.options import DEFAULT_STUDY, JsonOption
+from codesign.cli.options import DEFAULT_STUDY, JsonOption, TrajectoryOption, parse_design
 from codesign.errors import StudyError
 
 commands = typer.Typer()
@@ -80,6 +80,37 @@ def check(
     else:
         print_study(summary)
     return 0
+
+
+@commands.command(epilog="Example: `codesign tune my_study`")
+def tune(
+    study: Annotated[str, typer.Argument(help="A shipped study's name or the path of a study.toml.")] = DEFAULT_STUDY,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A design; default: the baseline.")
+    ] = None,
+    trajectory: TrajectoryOption = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Flies a design with gains of several bandwidths, and prints what came of it and the best ones.
+
+    Gains are computed from mass, inertia and bandwidth (docs/control.md). Exit code 1 if all flights were
+    lost.
+    """
+    from codesign.chain.study import load_study
+    from codesign.chain.tuning import recommended
+    from codesign.chain.tuning import tune as tune_study
+    from codesign.cli.study_summary import typical
+    from codesign.cli.tuning import print_tuning, tuning_document
+
+    loaded = load_study(study)
+    design = loaded.space.design(parse_design(set_)) if set_ else typical(loaded)
+    trials = tune_study(loaded, design, trajectory)
+    chosen = recommended(trials)
+    if as_json:
+        print_json(tuning_document(trials, chosen))
+    else:
+        print_tuning(trials, chosen)
+    return 1 if chosen is None else 0
 
 
 @commands.command(epilog="Example: `codesign schema > study.schema.json`")
