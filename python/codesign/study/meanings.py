@@ -115,7 +115,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "GainsConfig": {
         "linear_proportional": "on the position of the center of mass",
         "linear_derivative": "on its velocity",
-        "linear_momentum": "on the linear momentum",
+        "linear_momentum": "its inverse acts on the linear momentum; less of it is stiffer",
         "attitude_proportional": "on the attitude",
         "attitude_derivative": "on the angular velocity",
         "joint_integral": "on the joint positions, in torque control",
