@@ -67,6 +67,7 @@ class Execution:
     workers: int = 2
     time_limit_s: float = 120.0
     memory_limit_mib: int = 0
+    lazy: bool | None = None
 
 
 class StandIn:

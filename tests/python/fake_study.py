@@ -15,13 +15,14 @@ import random
 import signal
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
+from codesign.problem.pareto import rival_of
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class Execution:
     workers: int = 2
     time_limit_s: float = 20.0
     memory_limit_mib: int = 400
+    lazy: bool | None = None
 
 
 class FakeStudy:
@@ -94,6 +96,21 @@ class FakeStudy:
         )
 
 
+class LazyStudy(FakeStudy):
+    """Tells early that a design will not enter the front; its constraint is known late."""
+
+    loader = "fake_study:load_lazy"
+
+    def evaluate_lazily(self, design: Any, rivals: Any, /, cache: Any = None) -> Evaluation:
+        whole = self.evaluate(design, cache=cache)
+        rival = rival_of(rivals, whole.objectives.values()) if whole.objectives else None
+        if rival is None:
+            return whole
+        return replace(
+            whole, status="skipped", reason=f"not computed, see {rival}", constraints={}, violations={}, parts={}
+        )
+
+
 def misbehave(fault: str | None) -> None:
     if fault is None:
         return
@@ -124,6 +141,10 @@ def misbehave(fault: str | None) -> None:
 
 def load(source: str) -> FakeStudy:
     return FakeStudy(source)
+
+
+def load_lazy(source: str) -> LazyStudy:
+    return LazyStudy(source)
 
 
 def study(**options: Any) -> FakeStudy:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -53,12 +53,15 @@ class Verdict:
     margins: dict[str, float] = field(default_factory=dict)
 
 
-def judge(config: StudyConfig, document: Document, functions: Functions) -> Verdict:
+def judge(
+    config: StudyConfig, document: Document, functions: Functions, chosen: Iterable[Limit] | None = None
+) -> Verdict:
     """The verdict on the numbers of a design.
 
     Args:
         config: the study's, as configured by the design. document: parts, flight, objective_families.
         functions: the study's own functions of an evaluation by key, `module:function`.
+        chosen: limits to judge; None: all of the study's.
     Raises: StudyError: an objective or limit names a number that the evaluation does not have.
     """
     flight = document["flight"]
@@ -66,7 +69,7 @@ def judge(config: StudyConfig, document: Document, functions: Functions) -> Verd
     constraints: dict[str, float] = {}
     margins: dict[str, float] = {}
     reasons = []
-    for limit in limits(config):
+    for limit in limits(config) if chosen is None else chosen:
         value = value_of(document, limit.quantity, functions)
         if value is not None:
             constraints[limit.quantity.key] = value

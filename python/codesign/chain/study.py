@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codesign.chain import chain
+from codesign.chain import chain, lazy
 from codesign.chain.controllability import Controllability, grounded, study_controllability
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignValue
@@ -17,7 +17,7 @@ from codesign.study.study import StudyData
 if TYPE_CHECKING:
     from codesign.parts.load_case import Confirmation
     from codesign.problem.evaluation import Evaluation
-    from codesign.problem.protocols import PartCache
+    from codesign.problem.protocols import PartCache, Rival
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,16 @@ class Study(StudyData):
     def grounded(self) -> str | None:
         """Why no design can fly, told before the search; None if nothing speaks against it."""
         return grounded(self)
+
+    def evaluate_lazily(
+        self,
+        theta: Mapping[str, DesignValue] | Sequence[DesignValue],
+        rivals: Sequence[Rival],
+        /,
+        cache: PartCache | None = None,
+    ) -> Evaluation:
+        """As `evaluate`, without strength and clearances of a design that cannot enter the front; see `chain.lazy`."""
+        return lazy.evaluate_lazily(self, self.space.design(theta), rivals, cache)
 
     def confirm(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> dict[str, Confirmation]:
         """Parts of a design by name, as analyzed and with full geometry on a fine mesh (some seconds per part)."""

@@ -41,7 +41,7 @@ def shown(value: Any, digits: int = 6) -> str:
 
 def print_evaluation(evaluation: Evaluation) -> None:
     """Text summary of one evaluation."""
-    color = {"feasible": "green", "infeasible": "yellow", "failed": "red"}[evaluation.status]
+    color = {"feasible": "green", "infeasible": "yellow", "skipped": "yellow", "failed": "red"}[evaluation.status]
     design = "  ".join(f"{name}={value_text(value)}" for name, value in evaluation.design.items())
     out.print(Text.assemble((evaluation.status, f"bold {color}"), f"  {design}"))
     if evaluation.reason:

@@ -27,7 +27,7 @@ from codesign.execution.worker import LENGTH, write_message
 from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
-from codesign.problem.protocols import Problem
+from codesign.problem.protocols import Problem, Rival
 
 DEFAULT_LOADER = "codesign.chain.study:load_study"
 START_LIMIT = 120.0  # s for a worker to import and load the study
@@ -64,11 +64,16 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One evaluation to run."""
+    """One evaluation to run; rivals: of a lazy one, see `LazyProblem`."""
 
     number: int
     design: dict[str, DesignValue]
     trajectory: str | None = None
+    rivals: tuple[Rival, ...] | None = None
+
+    def message(self) -> dict[str, Any]:
+        """As the worker reads it."""
+        return {"design": self.design, "trajectory": self.trajectory, "rivals": self.rivals}
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +218,7 @@ class LocalPool:
                 worker.deadline = worker.begun + self._limits.time_s if self._limits.time_s > 0 else float("inf")
                 assert worker.process.stdin is not None
                 with contextlib.suppress(BrokenPipeError):  # it has died: seen at its end of file
-                    write_message(worker.process.stdin, {"design": task.design, "trajectory": task.trajectory})
+                    write_message(worker.process.stdin, task.message())
 
     def _receive(self, worker: _Worker) -> None:
         assert worker.process.stdout is not None

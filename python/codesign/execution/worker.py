@@ -21,12 +21,11 @@ import sys
 import threading
 import time
 import traceback
-from typing import IO, TYPE_CHECKING, Any
-
-from codesign.problem.design_space import DesignValue
+from typing import IO, TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:  # a worker imports what its study needs, nothing more
-    from codesign.problem.protocols import PartCache, Problem
+    from codesign.problem.evaluation import Evaluation
+    from codesign.problem.protocols import LazyProblem, PartCache, Problem
 
 LENGTH = struct.Struct(">I")
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
@@ -57,13 +56,11 @@ def load(loader: str, source: str) -> Problem:
     return study
 
 
-def evaluate(
-    study: Problem, design: dict[str, DesignValue], trajectory: str | None, cache: PartCache | None, memory_mib: int = 0
-) -> dict[str, Any]:
-    """One evaluation as a message; an exception becomes a failed one that names it."""
-    exhausted = False
+def evaluate(study: Problem, task: dict[str, Any], cache: PartCache | None, memory_mib: int = 0) -> dict[str, Any]:
+    """One evaluation as a message; an exception becomes a failed one that names it. task: see `Task.message`."""
+    exhausted, design = False, task["design"]
     try:
-        document = study.evaluate(design, trajectory=trajectory, cache=cache).to_dict()
+        document = _evaluated(study, task, cache).to_dict()
         json.dumps(document, allow_nan=False)
     except BaseException as error:  # SystemExit too: nothing that an evaluation raises may end the worker
         exhausted = isinstance(error, MemoryError)
@@ -74,6 +71,12 @@ def evaluate(
         provenance = {"traceback": traceback.format_exc(limit=-8)}
         document = {"design": design, "status": "failed", "reason": reason, "provenance": provenance}
     return {"evaluation": document, "exhausted": exhausted}
+
+
+def _evaluated(study: Problem, task: dict[str, Any], cache: PartCache | None) -> Evaluation:
+    if task["rivals"] is not None:
+        return cast("LazyProblem", study).evaluate_lazily(task["design"], task["rivals"], cache=cache)
+    return study.evaluate(task["design"], trajectory=task["trajectory"], cache=cache)
 
 
 def limit_memory(limit_mib: int) -> None:
@@ -127,7 +130,7 @@ def main(arguments: list[str]) -> None:
     while True:
         task = tasks.get()
         started = time.perf_counter()
-        answer = evaluate(study, task["design"], task["trajectory"], cache, int(memory_mib))
+        answer = evaluate(study, task, cache, int(memory_mib))
         write_message(answers, answer | {"seconds": time.perf_counter() - started})
 
 

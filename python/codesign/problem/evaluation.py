@@ -10,14 +10,15 @@ from typing import Any, Literal
 
 from codesign.problem.design_space import DesignValue
 
-Status = Literal["feasible", "infeasible", "failed"]
+Status = Literal["feasible", "infeasible", "skipped", "failed"]
 
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
     """All numbers of one design; SI units except `design`, which keeps the study's units.
 
-    status: `feasible`; `infeasible` (constraints violated, numbers valid); `failed` (no numbers, `reason` says why).
+    status: `feasible`; `infeasible` (constraints violated, numbers valid); `skipped` (cannot enter the
+        front, so its remaining constraints were not computed); `failed` (no numbers). `reason` says why.
     objectives: the family that the study minimizes; empty if the flight was lost (infeasible) or the evaluation failed.
     violations: how far each constraint is violated, relative to its limit; 0 where it holds. Ranking uses their sum.
     margins: the same with the other sign and, where a constraint holds, by how much; absent where it has no number.

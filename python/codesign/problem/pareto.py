@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.protocols import Rival
 
 MARGIN = 0.1  # of the first designs' range: how far the reference point lies beyond their worst values
 
@@ -29,6 +30,15 @@ def non_dominated(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
             dominated = (row <= values).all(axis=1) & (row < values).any(axis=1)
             keep &= ~dominated
     return keep
+
+
+def rival_of(rivals: Iterable[Rival], objectives: Iterable[float]) -> int | None:
+    """Number of the first rival that is nowhere worse than a design with these objectives; None if there is none."""
+    values = tuple(objectives)
+    for number, others in rivals:
+        if all(other <= value for other, value in zip(others, values, strict=True)):
+            return number
+    return None
 
 
 class Hypervolume:

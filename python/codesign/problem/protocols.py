@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Protocol
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, runtime_checkable
 
 from codesign.problem.design_space import DesignSpace, DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
+
+Rival = tuple[int, Sequence[float]]  # number and objectives of a feasible design
 
 
 class PartCache(Protocol):
@@ -58,6 +60,10 @@ class ExecutionDefaults(Protocol):
     @property
     def workers(self) -> int:
         """Worker processes."""
+
+    @property
+    def lazy(self) -> bool | None:
+        """Whether strength and clearances of designs that cannot enter the front are left out; None: the search's."""
 
     @property
     def time_limit_s(self) -> float:
@@ -111,3 +117,13 @@ class Problem(Protocol):
         self, design: Mapping[str, DesignValue], /, trajectory: str | None = None, cache: PartCache | None = None
     ) -> Evaluation:
         """One design, on the study's own trajectory unless another is named."""
+
+
+@runtime_checkable
+class LazyProblem(Problem, Protocol):
+    """A problem that can tell early that a design will not enter the front."""
+
+    def evaluate_lazily(
+        self, design: Mapping[str, DesignValue], rivals: Sequence[Rival], /, cache: PartCache | None = None
+    ) -> Evaluation:
+        """One design; `skipped` as soon as one of the rivals is nowhere worse."""

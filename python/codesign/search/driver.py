@@ -15,11 +15,12 @@ from dataclasses import dataclass
 from codesign.errors import StoreError
 from codesign.execution.pool import Executor, Outcome, Task
 from codesign.problem.evaluation import Evaluation
-from codesign.problem.pareto import FrontTracker
-from codesign.problem.protocols import PartCache, Problem
+from codesign.problem.pareto import FrontTracker, rival_of
+from codesign.problem.protocols import LazyProblem, PartCache, Problem, Rival
 from codesign.search.base import Grid, Repeatable, Search
 from codesign.search.progress import Progress
 from codesign.search.provenance import session_provenance
+from codesign.search.rivals import Rivals
 from codesign.storage.designs import keep_evaluation, known_evaluation
 from codesign.storage.records import Generation, Record
 from codesign.storage.store import RunStore
@@ -68,12 +69,13 @@ class Termination:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A search, when it asks, when it ends, and how many designs it will ask for at most."""
+    """A search, when it asks, when it ends, how many designs it will ask for at most, whether they are lazy."""
 
     search: Search
     schedule: Schedule
     stop: Termination
     total: int
+    lazy: bool = False
 
 
 @dataclass(slots=True)
@@ -103,7 +105,9 @@ class SearchDriver:
         self._results: dict[Grid, Evaluation] = {}
         self._grids: list[Grid] = []  # by number
         self._told = 0
-        self._told_counts = {"feasible": 0, "infeasible": 0, "failed": 0}
+        self._rivals = Rivals(study.objectives) if plan.lazy and isinstance(study, LazyProblem) else None
+        self._rivals_of: dict[int, tuple[Rival, ...]] = {}  # by number
+        self._told_counts = {"feasible": 0, "infeasible": 0, "skipped": 0, "failed": 0}
         self._counts = dict(self._told_counts)
         for record in self._known.values():
             self._counts[record.evaluation.status] += 1
@@ -177,6 +181,8 @@ class SearchDriver:
         batch = self._batches.popleft()
         evaluations = [self._results.pop(grid) for grid in batch.grids]
         self._search.tell(batch.grids, evaluations)
+        if self._rivals is not None:
+            self._rivals.add(batch.start, evaluations)
         self._told += len(evaluations)
         for evaluation in evaluations:
             self._told_counts[evaluation.status] += 1
@@ -193,7 +199,7 @@ class SearchDriver:
         state = Generation(
             len(self._history) - 1,
             self._told,
-            **self._told_counts,
+            **{status: count for status, count in self._told_counts.items() if status != "skipped"},
             hypervolume=self._history[-1],
             population=population,
         )
@@ -237,12 +243,14 @@ class SearchDriver:
         """Makes rows of newly asked designs; takes from the store and the cache what they have."""
         designs = {grid: self._study.space.from_indices(grid).to_dict() for grid in grids}
         rows = list(enumerate(grids, asked))
+        if self._rivals is not None:
+            self._rivals_of |= dict.fromkeys(range(asked, asked + len(grids)), self._rivals.front)
         new = [(number, grid) for number, grid in rows if grid not in self._known]
         generation = asked // self._schedule.first
         with self._store.transaction():
             self._store.enqueue([(n, generation, grid, designs[grid]) for n, grid in rows], self._study.hash)
             for number, grid in new:
-                known = known_evaluation(self._study, grid, self._cache)
+                known = self._known_before(number, grid)
                 if known is None:
                     self._queue.append(number)
                 else:
@@ -258,12 +266,20 @@ class SearchDriver:
                     )
                 self._results[grid] = record.evaluation
 
+    def _known_before(self, number: int, grid: Grid) -> Evaluation | None:
+        """The evaluation in the cache, if it is what would be computed now."""
+        known = known_evaluation(self._study, grid, self._cache)
+        if known is None or self._rivals is None:
+            return known
+        whole = known.status == "feasible" and rival_of(self._rivals_of[number], known.objectives.values()) is None
+        return known if whole else None
+
     def _hand_out(self, executor: Executor) -> None:
         while self._queue and executor.free() > 0:
             number = self._queue.popleft()
             self._running.add(number)
             design = self._study.space.from_indices(self._grids[number]).to_dict()
-            executor.submit(Task(number, design))
+            executor.submit(Task(number, design, rivals=self._rivals_of.get(number)))
         with self._store.transaction():
             self._store.mark([self._grids[number] for number in self._running], "running")
 
@@ -279,7 +295,8 @@ class SearchDriver:
                 self._running.discard(number)
             self._store.update_session(self._session, time.monotonic() - self._began)
         for outcome in outcomes:
-            keep_evaluation(self._study, self._grids[outcome.task.number], self._evaluation(outcome), self._cache)
+            if self._rivals is None or outcome.evaluation.status == "feasible":  # others lack numbers
+                keep_evaluation(self._study, self._grids[outcome.task.number], self._evaluation(outcome), self._cache)
 
     def _evaluation(self, outcome: Outcome) -> Evaluation:
         return checked(outcome.evaluation, self._study.objectives)

@@ -54,6 +54,7 @@ def optimize(
     first: Sequence[Mapping[str, DesignValue]] = (),
     steady: bool = False,
     lag: int | None = None,
+    lazy: bool | None = None,
     wall_time: float | None = None,
     stall_generations: int | None = None,
     options: Mapping[str, Any] | None = None,
@@ -72,6 +73,8 @@ def optimize(
         start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
         first: designs to evaluate at the head of the start population.
         steady: offspring without waiting for whole generations; `lag` designs unranked at most (default: population).
+        lazy: strength and clearances are computed only for designs that can enter the front; None: as in the study's
+            [execution], or as the search prefers (surrogate: yes).
         wall_time: seconds after which no new design is asked for.
         stall_generations: ends when the hypervolume has grown by less than 0.1 % over so many generations.
         options: of the algorithm itself, JSON values.
@@ -96,6 +99,7 @@ def optimize(
         first=tuple(study.space.indices(design) for design in first),
         steady=steady,
         lag=lag,
+        lazy=_lazily(study, algorithm) if lazy is None else lazy,
         wall_time=wall_time,
         stall_generations=stall_generations,
         options=dict(options or {}),
@@ -128,6 +132,12 @@ def _budget(study: Problem, algorithm: str, population: int, generations: int | 
     if study.optimizer.evaluations is not None:
         return study.optimizer.evaluations
     return find_search(algorithm).evaluations or population * study.optimizer.generations
+
+
+def _lazily(study: Problem, algorithm: str) -> bool:
+    """What the study says, else what the search prefers. Raises: ValueError: there is no such search."""
+    said = study.execution.lazy
+    return find_search(algorithm).lazy if said is None else said
 
 
 def sweep(study: StudyLike, counts: Sequence[int], *, out: str | Path, **resources: Unpack[Resources]) -> Run:

@@ -20,6 +20,7 @@ class Progress:
     evaluated_here: int
     seconds: float
     cached: int = 0
+    skipped: int = 0
     generation: int = 0
     hypervolume: float | None = None
     ended: str | None = None
@@ -27,7 +28,7 @@ class Progress:
     @property
     def done(self) -> int:
         """Designs with a result."""
-        return self.feasible + self.infeasible + self.failed
+        return self.feasible + self.infeasible + self.skipped + self.failed
 
     @property
     def rate(self) -> float:
@@ -92,6 +93,8 @@ def describe(progress: Progress) -> str:
         f"hypervolume {hypervolume}",
         f"left {duration(left)}" if left is not None else "left —",
     ]
+    if progress.skipped:
+        parts.insert(4, f"skipped {progress.skipped}")
     if progress.cached:
         parts.insert(2, f"cached {progress.cached}")
     return "  ".join(parts)

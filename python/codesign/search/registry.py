@@ -41,7 +41,8 @@ class SearchKind:
     make: builds it for a design space and the keys of the minimized numbers. learns: what it asks for depends on what
     it was told, so it is asked for one generation at a time. options: a dataclass of its own settings, all with
     defaults. batch: of these options, how many designs are asked for at a time after the start population; None: a
-    generation. evaluations: the budget where none is given; None: that of the study's generations.
+    generation. evaluations: the budget where none is given; None: that of the study's generations. lazy: whether
+    strength and clearances of designs that cannot enter the front are left out where the study does not say.
     """
 
     make: Callable[[DesignSpace, Sequence[str], Settings, Any], Search]
@@ -49,6 +50,7 @@ class SearchKind:
     options: type = NoOptions
     batch: Callable[[Any], int] | None = None
     evaluations: int | None = None
+    lazy: bool = False
 
     def checked_options(self, given: Mapping[str, Any]) -> Any:
         """The options as an object. Raises: ValueError for an unknown name."""

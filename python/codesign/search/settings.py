@@ -24,6 +24,7 @@ class Settings:
     options: the search's own settings.
     evaluations: the whole budget, start population included; None: until nothing is left to ask for.
     first: grid points at the head of the start population.
+    lazy: strength and clearances of designs that cannot enter the front are not computed, where the problem can do so.
     steady: no barrier between generations; at most `lag` designs (default: population) are unranked at a time.
     """
 
@@ -37,6 +38,7 @@ class Settings:
     first: tuple[Grid, ...] = ()
     steady: bool = False
     lag: int | None = None
+    lazy: bool = False
     wall_time: float | None = None
     stall_generations: int | None = None
     stall_tolerance: float = 1e-3
@@ -87,4 +89,4 @@ class Settings:
             schedule = Schedule(size, batch, batch)
         stop = Termination(self.evaluations, self.wall_time, self.stall_generations, self.stall_tolerance)
         total = min(self.evaluations or len(self.listed), math.prod(space.levels))
-        return Plan(self.search(space, objectives), schedule, stop, total)
+        return Plan(self.search(space, objectives), schedule, stop, total, self.lazy)

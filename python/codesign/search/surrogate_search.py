@@ -124,4 +124,6 @@ def last_refit(now: int) -> int:
     return count
 
 
-SURROGATE = SearchKind(SurrogateSearch, options=SurrogateOptions, batch=lambda options: options.batch, evaluations=200)
+SURROGATE = SearchKind(
+    SurrogateSearch, options=SurrogateOptions, batch=lambda options: options.batch, evaluations=200, lazy=True
+)

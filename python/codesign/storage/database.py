@@ -18,9 +18,8 @@ from codesign.errors import StoreError
 DATABASE = "run.sqlite"
 LOCK = "run.lock"
 APPLICATION_ID = 0x636F6473  # "cods": tells our files from other SQLite files
-VERSION = 2
-SCHEMA = """
-CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+VERSION = 3
+EVALUATIONS = """
 CREATE TABLE evaluations (
   id INTEGER PRIMARY KEY,
   number INTEGER UNIQUE,            -- order in which the search asked for it, from 0; NULL: asked for by a person
@@ -28,7 +27,7 @@ CREATE TABLE evaluations (
   grid TEXT NOT NULL,               -- JSON list of grid indices, in the order of the study's variables
   trajectory TEXT NOT NULL DEFAULT '',  -- '': the study's own
   study_hash TEXT NOT NULL,
-  status TEXT NOT NULL CHECK (status IN ('queued', 'running', 'feasible', 'infeasible', 'failed')),
+  status TEXT NOT NULL CHECK (status IN ('queued', 'running', 'feasible', 'infeasible', 'skipped', 'failed')),
   reason TEXT,
   design TEXT NOT NULL,             -- JSON objects from here on, as in Evaluation
   objectives TEXT, objective_families TEXT, constraints TEXT, violations TEXT, margins TEXT,
@@ -36,6 +35,14 @@ CREATE TABLE evaluations (
   cached INTEGER NOT NULL DEFAULT 0, worker TEXT, wall_seconds REAL, finished TEXT,
   UNIQUE (grid, trajectory, study_hash)
 );
+"""
+COLUMNS = (
+    "id, number, generation, grid, trajectory, study_hash, status, reason, design, objectives, objective_families, "
+    "constraints, violations, margins, parts, flight, seconds, provenance, cached, worker, wall_seconds, finished"
+)
+SCHEMA = f"""
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+{EVALUATIONS}
 CREATE TABLE generations (
   generation INTEGER PRIMARY KEY,
   told INTEGER NOT NULL,            -- designs ranked or failed so far
@@ -50,6 +57,8 @@ CREATE TABLE sessions (
 """
 MIGRATIONS = {  # version -> script that makes it version + 1
     1: "ALTER TABLE evaluations ADD COLUMN margins TEXT; UPDATE evaluations SET margins = '{}';",
+    2: f"ALTER TABLE evaluations RENAME TO old; {EVALUATIONS} INSERT INTO evaluations ({COLUMNS}) SELECT {COLUMNS} "
+    "FROM old; DROP TABLE old;",
 }
 
 

@@ -99,6 +99,9 @@ def test_a_run_of_the_first_format_is_brought_up_to_date_when_it_is_read(tmp_pat
     again = load_run(tmp_path / "run")
     assert [record.evaluation.objectives for record in again.records] == [e.objectives for e in run.evaluations]
     assert {len(record.evaluation.margins) for record in again.records} == {0}
+    assert [record.identity() | {"margins": {}} for record in run.records] == [r.identity() for r in again.records]
+    with RunStore.open(tmp_path / "run") as store:  # statuses that the first format did not know are taken
+        store._execute("UPDATE evaluations SET status = 'skipped' WHERE number = 0")
 
 
 def test_missing_foreign_newer_and_broken_files_are_refused(tmp_path) -> None:

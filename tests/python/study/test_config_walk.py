@@ -153,6 +153,7 @@ def complete(raw: dict[str, Any]) -> None:
     }  # fmt: skip
     raw["optimizer"] |= {"algorithm": "nsga2", "crossover_probability": 0.9, "mutation_probability": 0.2, "seed": 1}
     raw["optimizer"]["evaluations"] = 160
+    raw["execution"]["lazy"] = True
 
 
 @pytest.fixture(scope="module")

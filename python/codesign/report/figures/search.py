@@ -9,7 +9,7 @@ import numpy as np
 from codesign.report.figures import style
 from codesign.report.figures.data import FigureData
 
-STATUSES = {"feasible": style.BLUE, "infeasible": style.SKY, "failed": style.VERMILION}
+STATUSES = {"feasible": style.BLUE, "infeasible": style.SKY, "skipped": style.LOST, "failed": style.VERMILION}
 BATCHES = 40
 
 
@@ -29,7 +29,8 @@ def convergence(data: FigureData) -> Any:
     upper.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
     edges = np.linspace(0, len(run.entries), min(BATCHES, len(run.entries)) + 1)
     bottom = np.zeros(len(edges) - 1)
-    for status, color in STATUSES.items():
+    statuses = {entry.evaluation.status for entry in run.entries}
+    for status, color in ((status, color) for status, color in STATUSES.items() if status in statuses):
         at = [k + 0.5 for k, entry in enumerate(run.entries) if entry.evaluation.status == status]
         share = np.histogram(at, edges)[0] / np.maximum(np.diff(edges), 1e-9)
         lower.bar(edges[:-1], share, np.diff(edges), bottom, align="edge", color=color, linewidth=0, label=status)

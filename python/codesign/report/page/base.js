@@ -2,8 +2,8 @@
 const report = JSON.parse(document.getElementById('data').textContent);
 const designs = report.designs;
 const original = report.baseline === null ? null : designs[report.baseline];
-const FEASIBLE = 0, INFEASIBLE = 1, FAILED = 2;
-const STATUS = ['feasible', 'infeasible', 'failed'];
+const FEASIBLE = 0, INFEASIBLE = 1, FAILED = 2, SKIPPED = 3;
+const STATUS = ['feasible', 'infeasible', 'failed', 'not computed'];
 const element = id => document.getElementById(id);
 const escaped = text => String(text).replace(/[&<>"]/g, c => ({'&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;'})[c]);
 const color = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();

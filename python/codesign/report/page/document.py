@@ -14,7 +14,7 @@ from codesign.report.details import detail_key
 from codesign.report.objections import Objection, objections
 from codesign.units import DEGREE
 
-STATUS = {"feasible": 0, "infeasible": 1, "failed": 2}
+STATUS = {"feasible": 0, "infeasible": 1, "failed": 2, "skipped": 3}
 FLOORS = {"body_clearance": 0.0, "plume_clearance": 0.0}  # below it a number is bad, whether limited or not
 PART_KEYS = ("mass", "safety_factor", "peak_stress", "stress_error", "max_displacement")
 FLIGHT_FACTS = (

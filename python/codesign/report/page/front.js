@@ -26,7 +26,7 @@ function frontTraces() {
   } : {color: color('accent')};
   const traces = [
     markers(points(d => d.status === INFEASIBLE), {symbol: 'x-thin', size: 6, line: {width: 1.2, color: color('lost')}}, 'infeasible'),
-    markers(points(d => d.status === FEASIBLE && !d.front), {size: 6, color: color('dot'), opacity: 0.75}, 'feasible'),
+    markers(points(d => d.status === SKIPPED || d.status === FEASIBLE && !d.front), {size: 6, color: color('dot'), opacity: 0.75}, 'feasible, or not computed'),
     markers(best, {size: 10, symbol: best.map(i => designs[i].barred ? 'circle-open' : 'circle'), line: {width: 1, color: color('bg')}, ...scale}, 'best compromise'),
   ];
   const at = points(d => d === original);

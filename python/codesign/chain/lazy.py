@@ -1,0 +1,114 @@
+"""Evaluations that stop as soon as a design cannot enter the front: the flight first, strength and clearances last.
+
+What is not computed has no number: the reason says so. A feasible evaluation is always whole.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from codesign import _core
+from codesign.chain.chain import build_parts, build_robot, evaluate
+from codesign.chain.documents import flight_document, objective_families
+from codesign.chain.flight import find_trajectory, flight_settings, refusals
+from codesign.chain.judge import FLIGHT_MISSED, Verdict, judge, limits
+from codesign.chain.provenance import provenance
+from codesign.errors import CodesignError
+from codesign.problem.design_space import Design
+from codesign.problem.evaluation import Evaluation
+from codesign.problem.pareto import rival_of
+from codesign.problem.quantities import FAMILY, MINUS, Quantity, quantity
+
+if TYPE_CHECKING:
+    from codesign.problem.protocols import PartCache, Rival
+    from codesign.study import StudyData
+    from codesign.study.config import StudyConfig
+
+NOT_COMPUTED = "strength and clearances not computed"
+FLIGHT, CLEARANCES, MASSES = "flight.", "flight.interference", "mass"
+
+
+def evaluate_lazily(
+    study: StudyData, design: Design, rivals: Sequence[Rival], cache: PartCache | None = None
+) -> Evaluation:
+    """As `chain.evaluate`, but a design that cannot enter the front is flown only.
+
+    rivals: number and objectives of feasible designs; one that a rival is nowhere worse than is `skipped`, one whose
+    flight is lost or misses a limit of the flight is `infeasible` without further numbers. Where objectives need more
+    than flight and masses, every design is evaluated whole.
+    """
+    config = study.configured(design)
+    if not can_wait(config):
+        return evaluate(study, design, cache=cache)
+    try:
+        early = _flown_only(study, design, config, rivals)
+    except CodesignError as error:
+        return Evaluation.failure(design.to_dict(), f"{type(error).__name__}: {error}", provenance(study))
+    return early or evaluate(study, design, cache=cache)
+
+
+def can_wait(config: StudyConfig) -> bool:
+    """Whether flight and masses give all objectives, and something else is left to compute."""
+    wanted = [quantity(key.removeprefix(MINUS)) for key in config.objectives.keys]
+    return config.flight is not None and all(_early(q) or _massive(q) for q in wanted)
+
+
+def _early(wanted: Quantity) -> bool:
+    """Whether a flight gives a number."""
+    path = wanted.path or wanted.key
+    return wanted.key in FAMILY or (path.startswith(FLIGHT) and not path.startswith(CLEARANCES))
+
+
+def _massive(wanted: Quantity) -> bool:
+    """Whether it is made of masses of parts."""
+    path = (wanted.path or wanted.key).rstrip(")")
+    return ".".join(path.split(".")[2:]) == MASSES and "parts." in path
+
+
+def _flown_only(study: StudyData, design: Design, config: StudyConfig, rivals: Sequence[Rival]) -> Evaluation | None:
+    """The evaluation, if the flight decides it."""
+    start = time.perf_counter()
+    parts = build_parts(study, design, config)
+    robot = build_robot(study, design)
+    trajectory = find_trajectory(config, config.flown.trajectory)
+    built = time.perf_counter()
+    with refusals(study.path):
+        result = _core.evaluate([], robot.to_text(), flight_settings(config.flown, trajectory))
+    log = result.flight
+    document: dict[str, Any] = {
+        "parts": {name: {MASSES: float(part.mass_properties().mass)} for name, part in parts.items()},
+        "flight": flight_document(config.flown.trajectory, log, config.flown.duration_s, result.seconds["flight"]),
+        "objective_families": objective_families(log) if log.completed else {},
+    }
+    chosen = [limit for limit in limits(config) if _early(limit.quantity) or limit.quantity.key == FLIGHT_MISSED]
+    verdict = judge(config, document, study.functions, chosen)
+    rival = None if verdict.status == "infeasible" else rival_of(rivals, verdict.objectives.values())
+    if verdict.status != "infeasible" and rival is None:
+        return None
+    seconds = {"geometry": built - start, **result.seconds, "total": time.perf_counter() - start}
+    return _stopped(study, design, verdict, rival, document | {"parts": {}}, seconds)
+
+
+def _stopped(
+    study: StudyData,
+    design: Design,
+    verdict: Verdict,
+    rival: int | None,
+    document: Mapping[str, Any],
+    seconds: dict[str, float],
+) -> Evaluation:
+    reason = verdict.reason if rival is None else f"design {rival} is nowhere worse"
+    return Evaluation(
+        design=design.to_dict(),
+        status="infeasible" if rival is None else "skipped",
+        reason=f"{reason}; {NOT_COMPUTED}",
+        objectives=verdict.objectives,
+        constraints=verdict.constraints,
+        violations=verdict.violations,
+        margins=verdict.margins,
+        **document,
+        seconds=seconds,
+        provenance=provenance(study),
+    )
