@@ -1,8 +1,8 @@
 """A stand-in made from a run's evaluated designs: as smooth and as broken as the real study, evaluated in no time.
 
 Objectives (logarithms where all are positive) and margins of constraints are thin-plate splines through the designs
-that have them, over the unit box of the grid; a design is lost where the spline through 1 (has objectives) and 0 (has
-none) is below one half.
+that have them, over the unit box of the grid. A design is lost where the linear interpolant of 1 (has objectives) and 0
+(has none) is below one half, and where a variable is beyond all designs that have objectives: nothing is known there.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from codesign.storage.runs import Run, load_run
 from codesign.surrogate.outputs import has_objectives, margins
 
 Array = npt.NDArray[np.float64]
+FACTOR = "safety_factor"
 PART = 50_000  # cells interpolated at a time
 
 
@@ -56,19 +57,22 @@ class RunStandIn:
         self.median = np.median(table, axis=0)
         self._log = (table > 0.0).all(axis=0)
         self._spline = _spline(points[flown], np.where(self._log, np.log(np.abs(table)), table))
-        self._label = _spline(points, flown[:, None].astype(float)) if not flown.all() else None
+        self._lowest, self._highest = points[flown].min(axis=0), points[flown].max(axis=0)
+        labels = flown[:, None].astype(float)
+        self._label = RBFInterpolator(points, labels, kernel="linear") if not flown.all() else None
         self._margins, self.constraints = self._margin_splines(run, points, least)
+        self._values = [spline.d for spline in self._margins]
 
     def _margin_splines(
         self, run: Run, points: Array, least: float | None
     ) -> tuple[list[RBFInterpolator], tuple[str, ...]]:
         splines, names = [], []
-        for key, (rows, values) in margins(run.evaluations).items():
-            if values.max() <= 0.0:  # a label: holds or not
-                continue
-            if key == "safety_factor" and least is not None:
-                factors = np.array([run.evaluations[row].constraints[key] for row in rows])
-                values = factors / least - 1.0
+        known = {key: found for key, found in margins(run.evaluations).items() if found[1].max() > 0.0}  # no labels
+        if least is not None:
+            factors = [evaluation.constraints.get(FACTOR) for evaluation in run.evaluations]
+            rows = np.flatnonzero([factor is not None for factor in factors])
+            known[FACTOR] = rows, np.array([factors[row] for row in rows], dtype=float) / least - 1.0
+        for key, (rows, values) in known.items():
             splines.append(_spline(points[rows], values[:, None]))
             names.append(key)
         return splines, tuple(names)
@@ -77,7 +81,9 @@ class RunStandIn:
         """Numbers of (n, variables) cells."""
         unit = np.asarray(grids) / self._top
         found = self._spline(unit)
-        flown = self._label(unit)[:, 0] >= 0.5 if self._label is not None else np.ones(len(unit), dtype=bool)
+        flown = ((unit >= self._lowest) & (unit <= self._highest)).all(axis=1)
+        if self._label is not None:
+            flown &= self._label(unit)[:, 0] >= 0.5
         kept = [spline(unit) for spline in self._margins]
         return Values(
             np.where(self._log, np.exp(found), found), np.hstack(kept) if kept else np.ones((len(unit), 1)), flown
@@ -99,7 +105,8 @@ class RunStandIn:
 
     def true_front(self, kept_in: Path) -> Array:
         """(n, objectives) front of all cells; kept in a file, since a large grid takes minutes."""
-        name = hashlib.sha256(repr((self.median, self.constraints, self._spline.d.tobytes())).encode()).hexdigest()[:12]
+        deciding = (self.median, self.constraints, self._spline.d, self._lowest, self._highest, *self._values)
+        name = hashlib.sha256(b"".join(np.asarray(part).tobytes() for part in deciding)).hexdigest()[:12]
         file = kept_in / f"front-{name}.npy"
         if file.exists():
             found: Array = np.load(file)

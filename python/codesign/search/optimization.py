@@ -12,7 +12,7 @@ from codesign.execution.pool import DEFAULT_LOADER, Executor, Limits, LocalPool,
 from codesign.execution.worker import load
 from codesign.problem.design_space import DesignValue
 from codesign.problem.identity import Identity
-from codesign.problem.protocols import Problem
+from codesign.problem.protocols import OptimizerDefaults, Problem
 from codesign.search.driver import SearchDriver
 from codesign.search.progress import Progress
 from codesign.search.provenance import check_search, search_identity
@@ -67,14 +67,12 @@ def optimize(
         out: folder of the run; must not hold one yet.
         population, generations, seed: as in the study's [optimizer] unless given; the seed decides what is random.
         evaluations: the budget itself, instead of population times generations.
-        algorithm: the study's unless given: surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name that an
-            installed package gives in its entry points `codesign.searches`; or `module:attribute`, a
-            `codesign.search.registry.SearchKind`.
+        algorithm: the study's unless given: surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa, random; a name in an
+            installed package's entry points `codesign.searches`; or `module:attribute`, a `SearchKind`.
         start: start population: sobol (scrambled by the seed), sobol-plain (as in the paper) or random.
         first: designs to evaluate at the head of the start population.
         steady: offspring without waiting for whole generations; `lag` designs unranked at most (default: population).
-        lazy: strength and clearances are computed only for designs that can enter the front; None: as in the study's
-            [execution], or as the search prefers (surrogate: yes).
+        lazy: strength and clearances only of designs that can enter the front; None: the study's, or the search's.
         wall_time: seconds after which no new design is asked for.
         stall_generations: ends when the hypervolume has grown by less than 0.1 % over so many generations.
         options: of the algorithm itself, JSON values.
@@ -85,16 +83,13 @@ def optimize(
         ValueError (wrong settings), KeyboardInterrupt (Ctrl-C: nothing stored is lost, `resume` continues).
     """
     study = _able_to_fly(load_problem(study))
-    optimizer = study.optimizer
-    size = optimizer.population if population is None else population
+    size = study.optimizer.population if population is None else population
     algorithm = _own_algorithm(study) if algorithm is None else algorithm
     settings = Settings(
         algorithm=algorithm,
         population=size,
         evaluations=_budget(study, algorithm, size, generations) if evaluations is None else evaluations,
-        crossover_probability=optimizer.crossover_probability,
-        mutation_probability=optimizer.mutation_probability,
-        seed=optimizer.seed if seed is None else seed,
+        seed=study.optimizer.seed if seed is None else seed,
         start=start,
         first=tuple(study.space.indices(design) for design in first),
         steady=steady,
@@ -103,6 +98,7 @@ def optimize(
         wall_time=wall_time,
         stall_generations=stall_generations,
         options=dict(options or {}),
+        **_breeding(study.optimizer),
     )
     return run_search(study, settings, out, **resources)
 
@@ -132,6 +128,11 @@ def _budget(study: Problem, algorithm: str, population: int, generations: int | 
     if study.optimizer.evaluations is not None:
         return study.optimizer.evaluations
     return find_search(algorithm).evaluations or population * study.optimizer.generations
+
+
+def _breeding(optimizer: OptimizerDefaults) -> dict[str, Any]:
+    names = ("crossover_probability", "mutation_probability")
+    return {name: getattr(optimizer, name) for name in names}
 
 
 def _lazily(study: Problem, algorithm: str) -> bool:
