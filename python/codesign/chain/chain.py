@@ -89,7 +89,7 @@ class Computed:
     seconds: dict[str, float]
 
 
-def _compute(
+def compute(
     study: StudyData, config: StudyConfig, cases: list[_core.PartCase], robot: RobotDescription, trajectory: str | None
 ) -> Computed:
     """Meshes and solves the parts; flies the robot if the study has a flight."""
@@ -118,7 +118,7 @@ def _evaluate(
     robot = _assemble(study, config, parts, masses)
     cases = {name: part_case(part, stress[name]) for name, part in parts.items() if name not in known}
     built = time.perf_counter()
-    result = _compute(study, config, list(cases.values()), robot, trajectory)
+    result = compute(study, config, list(cases.values()), robot, trajectory)
     documents: dict[str, dict[str, Any]] = {}
     for name in parts:
         if name in known:
@@ -152,12 +152,19 @@ def _flown(
     flight = result.flight
     if flight is None:
         return {"flight": {}, "objective_families": {}}
+    document = flown_document(config, flight, result.seconds["flight"], trajectory)
     clearances = _clearances(config, parts, robot, flight)
+    return document | ({"flight": document["flight"] | {"interference": clearances}} if clearances else {})
+
+
+def flown_document(
+    config: StudyConfig, log: dyn.FlightLog, seconds: float, trajectory: str | None = None
+) -> dict[str, Any]:
+    """What an evaluation says of a flight before clearances; objective families only if it was completed."""
     name = trajectory or config.flown.trajectory
-    document = flight_document(name, flight, config.flown, result.seconds["flight"])
     return {
-        "flight": document | ({"interference": clearances} if clearances else {}),
-        "objective_families": objective_families(flight) if flight.completed else {},
+        "flight": flight_document(name, log, config.flown, seconds),
+        "objective_families": objective_families(log) if log.completed else {},
     }
 
 

@@ -9,10 +9,7 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from codesign import _core
-from codesign.chain.chain import build_parts, build_robot, evaluate
-from codesign.chain.documents import flight_document, objective_families
-from codesign.chain.flight import find_trajectory, flight_settings, refusals
+from codesign.chain.chain import build_parts, build_robot, compute, evaluate, flown_document
 from codesign.chain.judge import FLIGHT_MISSED, Verdict, judge, limits
 from codesign.chain.provenance import provenance
 from codesign.errors import CodesignError
@@ -71,17 +68,12 @@ def _flown_only(study: StudyData, design: Design, config: StudyConfig, rivals: S
     """The evaluation, if the flight decides it."""
     start = time.perf_counter()
     parts = build_parts(study, design, config)
-    robot = build_robot(study, design)
-    trajectory = find_trajectory(config, config.flown.trajectory)
     built = time.perf_counter()
-    with refusals(study.path):
-        result = _core.evaluate([], robot.to_text(), flight_settings(config.flown, trajectory))
-    log = result.flight
-    document: dict[str, Any] = {
-        "parts": {name: {MASSES: float(part.mass_properties().mass)} for name, part in parts.items()},
-        "flight": flight_document(config.flown.trajectory, log, config.flown.duration_s, result.seconds["flight"]),
-        "objective_families": objective_families(log) if log.completed else {},
-    }
+    result = compute(study, config, [], build_robot(study, design), None)
+    if result.flight is None:
+        return None
+    masses = {name: {MASSES: float(part.mass_properties().mass)} for name, part in parts.items()}
+    document = {"parts": masses, **flown_document(config, result.flight, result.seconds["flight"])}
     chosen = [limit for limit in limits(config) if _early(limit.quantity) or limit.quantity.key == FLIGHT_MISSED]
     verdict = judge(config, document, study.functions, chosen)
     rival = None if verdict.status == "infeasible" else rival_of(rivals, verdict.objectives.values())
