@@ -5,7 +5,7 @@
 
 Prints, for every search and budget, median and least over the seeds of the hypervolume found over that of the true
 front, in two boxes: tight (reference: worst values of the true front and a tenth of its range) and wide (componentwise
-the worse of that and of the median of the run's flown designs); and the processor time of the proposals. Searches know
+the worse of that and of the median of random designs that fly); and the processor time of the proposals. Searches know
 neither. --least: the least safety factor, such that it cuts off a part of the front.
 """
 
@@ -42,7 +42,7 @@ def main() -> None:
     front = problem.true_front(given.out)
     span = np.ptp(front, axis=0)
     tight = front.max(axis=0) + MARGIN * span
-    wide = np.maximum(tight, problem.median)
+    wide = np.maximum(tight, problem.typical())
     boxes = {"tight": (front.min(axis=0), tight), "wide": (front.min(axis=0), wide)}
     print(f"true front: {len(front)} designs; references: tight {tight}, wide {wide}")
     print("algorithm | box   | " + " | ".join(f"{n:>11d}" for n in given.evaluations) + " | s of CPU")
