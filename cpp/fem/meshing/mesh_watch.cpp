@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <string>
 
 #include "errors.hpp"
@@ -29,6 +30,10 @@ constexpr double kCrowdShare = 0.02;
 
 // Vertices in a cube of one edge length; meshes have 0.9 deep inside and more at the surface.
 constexpr double kLeastVertices = 0.5;
+
+// Vertices in a square of the mean wall on the surface: with sides three times as long as a wall is
+// thick, the balls on its edges reach through it several times over.
+constexpr double kLeastOnWalls = 0.1;
 
 constexpr std::chrono::milliseconds kAlarmPeriod{20};
 
@@ -79,14 +84,20 @@ MeshWatch::MeshWatch(const MeshOptions& options)
       most_vertices_(options.max_vertices),
       most_questions_(options.max_questions) {}
 
-void MeshWatch::require_affordable(double volume, const SizeField& size) const {
-  const double least = kLeastVertices * volume / std::pow(size.base, 3);
-  const double most = static_cast<double>(most_vertices_);
-  if (least <= most) return;
-  throw MeshLimitError(
-      format("elements of %.4g mm need at least %.0f vertices to fill the part, more than %zu "
-             "(max_vertices): an edge length of at least %.4g mm is needed",
-             size.base * 1e3, least, most_vertices_, size.base * 1e3 * std::cbrt(least / most)));
+void MeshWatch::require_affordable(const SurfaceMesh& surface, const SizeField& size) const {
+  const double volume = enclosed_volume(surface), most = static_cast<double>(most_vertices_);
+  if (const double least = std::cbrt(kLeastVertices * volume / most); size.base < least)
+    throw MeshLimitError(
+        format("elements of %.4g mm fill the part with more than %zu vertices (max_vertices): an "
+               "edge length of at least %.4g mm is needed",
+               size.base * 1e3, most_vertices_, least * 1e3));
+  const std::vector<double> areas = face_areas(surface);
+  const double area = std::accumulate(areas.begin(), areas.end(), 0.0), wall = 2.0 * volume / area;
+  if (kLeastOnWalls * area > most * wall * wall)
+    throw MeshLimitError(
+        format("the part is too thin: elements as large as its mean wall of %.4g mm cover its "
+               "surface of %.4g mm² with more than %zu vertices (max_vertices)",
+               wall * 1e3, area * 1e6, most_vertices_));
 }
 
 MeshWatch::Alarm::Alarm(const MeshWatch& watch) {

@@ -8,6 +8,7 @@
 
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/size_field.hpp"
+#include "fem/surface/surface_mesh.hpp"
 
 namespace codesign::fem {
 
@@ -28,9 +29,10 @@ class MeshWatch {
   // The limits count from here.
   explicit MeshWatch(const MeshOptions& options);
 
-  // Throws MeshLimitError if a solid of this volume (m³) cannot be filled within the limit of
-  // vertices by elements of the largest wanted size, whatever its shape.
-  void require_affordable(double volume, const SizeField& size) const;
+  // Throws MeshLimitError if a solid cannot be filled within the limit of vertices by elements of
+  // the largest wanted size, whatever its shape, or its surface not be covered by elements that
+  // are three times as large as its mean wall (volume over half of the area).
+  void require_affordable(const SurfaceMesh& surface, const SizeField& size) const;
 
   // A question of the refinement. Throws Stop, Interrupted.
   void question() {

@@ -135,7 +135,7 @@ TetMesh tetrahedralize(const SurfaceMesh& input, const SizeField& size,
   check_size_field(size);
   MeshWatch watch(options);
   const PreparedSurface prepared = prepare_surface(input, size, options);
-  watch.require_affordable(enclosed_volume(prepared.surface), size);
+  watch.require_affordable(prepared.surface, size);
   TopologyKeeper keeper(prepared, size, options);
   TetMesh mesh = accepted_mesh(prepared, keeper, options, watch);
   if (options.curved)

@@ -52,8 +52,8 @@ class Sampler {
       pieces.pop_back();
       const auto [longest, k] = longest_edge(piece);
       const Vector3d center = (piece[0] + piece[1] + piece[2]) / 3.0;
-      double spacing = limit_, wall = limit_;
-      if (longest <= limit_) {
+      double spacing = std::max(limit_, finest_), wall = limit_;
+      if (longest <= spacing) {
         wall = thickness(t, center, -normal);
         const double gap = thickness(t, center, normal);
         if (gap < limit_) samples_.push_back({center, gap, 0.0});

@@ -22,6 +22,12 @@ constexpr double kLargestExtent = 1e4;      // m
 constexpr double kSmallestExtent = 1e-7;    // m
 constexpr double kDegenerateHeight = 1e-9;  // of the extent
 
+std::string number(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
 std::string place(const Eigen::RowVector3d& p) {
   char text[96];
   std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g) m", p.x(), p.y(), p.z());
@@ -127,7 +133,7 @@ SurfaceReport check_surface(const SurfaceMesh& surface) {
                     std::to_string(kMaxTriangles));
   const double size = extent(surface.points);
   if (!(size <= kLargestExtent && size >= kSmallestExtent))
-    throw MeshError("the surface is " + std::to_string(size) +
+    throw MeshError("the surface is " + number("%.3g", size) +
                     " m large, outside 1e-7 m to 1e4 m: check the scale (1e-3 for millimeters)");
   check_edges(surface);
 
@@ -147,12 +153,10 @@ SurfaceReport check_surface(const SurfaceMesh& surface) {
     report.degenerate_triangles += height < kDegenerateHeight * size;
     report.area += area;
   }
-  if (report.volume < 0.0) {
-    char mm3[32];
-    std::snprintf(mm3, sizeof mm3, "%.4g", report.volume * 1e9);
-    throw MeshError(std::string("the surface is inside-out: it encloses ") + mm3 +
+  if (report.volume < 0.0)
+    throw MeshError("the surface is inside-out: it encloses " +
+                    number("%.4g", report.volume * 1e9) +
                     " mm³; swap two corners of every triangle");
-  }
   if (report.volume <= 1e-9 * report.area * size) throw MeshError("the surface encloses no volume");
   return report;
 }

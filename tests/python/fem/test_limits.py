@@ -6,6 +6,7 @@ import time
 import numpy as np
 import pytest
 
+import fem_surfaces
 from codesign import fem
 from codesign.cli.stress_mesh import Mesher
 from codesign.errors import MemoryLimitError, MeshLimitError
@@ -69,9 +70,19 @@ def test_a_mesh_that_is_too_large_as_a_whole_is_told_so():
     vertices = int(fem.tetrahedralize(block(), 2e-3).tets[:, :4].max()) + 1
     with pytest.raises(MeshLimitError, match=r"1000 vertices \(max_vertices\).*larger edge length is needed"):
         fem.tetrahedralize(block(), 2e-3, max_vertices=1000)
-    with pytest.raises(MeshLimitError, match=r"at least 375 vertices .* edge length of at least 2.466 mm is needed"):
+    with pytest.raises(MeshLimitError, match=r"more than 200 vertices .* edge length of at least 2.466 mm is needed"):
         fem.tetrahedralize(block(), 2e-3, max_vertices=200)
     assert vertices > 1000
+
+
+def test_a_part_that_is_too_thin_everywhere_is_refused_at_once():
+    sheet = fem_surfaces.box((40, 20, 1e-5))
+    mesh = sheet.to_mesh64()
+    surface = fem.SurfaceMesh(mesh.vert_properties[:, :3] * 1e-3, np.asarray(mesh.tri_verts, dtype=np.int32))
+    with pytest.raises(MeshLimitError, match=r"too thin: elements as large as its mean wall of .* mm cover"):
+        fem.tetrahedralize(surface, time_limit=5.0)
+    with pytest.raises(MeshLimitError, match=r"edge length of at least .* mm is needed"):
+        fem.tetrahedralize(block(), 1e-300)
 
 
 def test_the_time_limit_is_kept_within_a_tenth_wherever_the_mesher_is():

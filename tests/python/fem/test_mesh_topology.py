@@ -104,6 +104,39 @@ def test_a_cavity_close_to_the_outside_stays_closed():
     assert_same_as_surface(mesh, surface)
 
 
+def test_a_wedge_keeps_its_edge_at_the_default_size():
+    surface = wedge(5.0)
+    mesh = fem.tetrahedralize(surface)
+    assert_same_as_surface(mesh, surface)
+    assert mesh.quality.volume * 1e9 == pytest.approx(0.5 * 30.0**2 * np.tan(np.radians(5.0)) * 20.0, rel=1e-6)
+
+
+BLOCK = box((0, 0, 0), (40, 40, 40))
+
+
+@pytest.mark.parametrize(
+    ("solid", "size_mm", "rel"),
+    [
+        (box((0, 0, 0), (20, 20, 20)) - box((5, 5, 5), (15, 15, 15)), None, 1e-9),
+        (BLOCK - manifold3d.Manifold.sphere(8.0, 32).translate([20.0, 20.0, 20.0]), 4.8, 5e-3),
+        (BLOCK - manifold3d.Manifold.sphere(8.0, 32).translate([20.0, 20.0, 20.0]), 9.5, 5e-3),
+        (
+            box((0, 0, 0), (60, 20, 20)) - manifold3d.Manifold.cylinder(40.0, 0.9, 0.9, 32).rotate([0.0, 90.0, 0.0])
+            .translate([10.0, 10.0, 10.0]),
+            None,
+            3e-3,
+        ),
+    ],
+    ids=["box", "sphere", "sphere, coarse", "rod"],
+)  # fmt: skip
+def test_a_sealed_cavity_stays_empty(solid, size_mm, rel):
+    """Also one without sharp edges, at which the mesher would begin."""
+    surface = surface_of(solid)
+    mesh = fem.tetrahedralize(surface, None if size_mm is None else size_mm * 1e-3)
+    assert mesh.report.genus == [0, 0]
+    assert_same_as_surface(mesh, surface, volume_tolerance=rel)
+
+
 def test_a_hole_beneath_the_surface_stays_a_tunnel():
     rod = manifold3d.Manifold.cylinder(42.0, 3.0, 3.0, 32).rotate([0.0, 90.0, 0.0]).translate([-1.0, 10.0, 3.6])
     surface = surface_of(box((0, 0, 0), (40, 20, 8)) - rod)
@@ -163,6 +196,19 @@ def dome_triangles(chords, rings):
 def test_a_dome_over_its_rim_is_filled(size):
     surface = dome()
     assert_same_as_surface(fem.tetrahedralize(surface, fem.SizeField(size)), surface, volume_tolerance=0.02)
+
+
+def test_a_cap_that_folds_the_surface_is_turned_away():
+    """A triangle 40 nm high on an edge: three sharp lines within its height, between which no mesh came to an end."""
+    points = np.array([[x, y, z] for z in (0.0, 20.0) for y in (0.0, 30.0) for x in (0.0, 40.0)], dtype=float)
+    tip = [20.0, -2.4e-5, 20.0 + 3.2e-5]  # above the upper edge of the side y = 0, and before it
+    quads = ((0, 2, 3, 1), (4, 5, 7, 6), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    triangles += [(0, 1, 8), (1, 5, 8), (0, 8, 4), (4, 8, 5)]  # the side, and the cap over the edge from 4 to 5
+    surface = fem.SurfaceMesh(np.vstack([points, tip]) * 1e-3, np.array(triangles, dtype=np.int32))
+    mesh = fem.tetrahedralize(surface, 6e-3, max_questions=2_000_000)
+    assert_same_as_surface(mesh, surface)
+    assert 0.0 < mesh.report.collapse_distance < 1e-7
 
 
 def test_a_breakdown_of_the_refinement_is_answered_by_another_size():
