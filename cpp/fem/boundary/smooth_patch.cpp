@@ -1,5 +1,6 @@
 #include "fem/boundary/smooth_patch.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,8 @@ constexpr double kGain =
 constexpr int kGrowths = 8;
 // Angle between a chord and the shape at its centroid over the bend between chords, at most.
 constexpr double kChordShare = 0.3;
-constexpr double kStripLength = 4.0;     // over the width, of a facet between two generators
+constexpr double kRing = 1e-4;        // least over largest variance of normals that end on a circle
+constexpr double kStripLength = 4.0;  // over the width, of a facet between two generators
 constexpr double kGeneratorTurn = 0.03;  // of normals along a generator, sine
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -298,7 +300,21 @@ class Grower {
       if (next == region) break;
       region = next;
     }
+    if (p.type == SurfaceType::sphere && !turns_both_ways(region)) return {};
     return {p.type, region};
+  }
+
+  // False for a single ring of facets: it lies on a sphere whatever it is cut from, a torus, say.
+  bool turns_both_ways(const std::vector<int>& triangles) const {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const int t : triangles) mean += area_[t] * normal(t) / area_of(triangles);
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    for (const int t : triangles)
+      moments += area_[t] * (normal(t) - mean) * (normal(t) - mean).transpose();
+    const Eigen::Vector3d spread =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    return spread[0] > kRing * spread[2];
   }
 
   const SurfaceMesh& surface_;

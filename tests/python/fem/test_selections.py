@@ -74,6 +74,31 @@ def test_a_face_of_a_file_is_known(solid, point, kind, expected):
     assert area(of, found.triangles) == pytest.approx(expected, rel=0.01)
 
 
+@pytest.mark.parametrize("point", [(13, 0, 0), (12, 0, 2.2), (10, 0, 3), (7, 0, 0)])
+def test_a_torus_is_taken_whole(point):
+    """It is no plane, cylinder, cone or sphere, though each ring of its facets lies on a sphere."""
+    torus = surface(m3.Manifold.revolve(m3.CrossSection.circle(3.0, 24).translate((10.0, 0.0)), 48))
+    found = patch(torus, point)
+    assert found.type == "free"
+    assert len(found.triangles) == len(torus.triangles)
+
+
+def test_a_rounded_rim_ends_at_the_flat_but_not_at_the_side_that_it_joins():
+    """A disk with a torus as its rim: what is none of the four shapes ends at planes and sharp edges."""
+    turn = np.linspace(0.0, np.pi / 2, 9)
+    outline = [
+        (0.0, 0.0),
+        (20.0, 0.0),
+        *zip(17.0 + 3.0 * np.cos(turn), 7.0 + 3.0 * np.sin(turn), strict=True),
+        (0.0, 10.0),
+    ]
+    disk = surface(m3.Manifold.revolve(m3.CrossSection([outline]), 64))
+    found = patch(disk, (17 + 3 * np.sqrt(0.5), 0, 7 + 3 * np.sqrt(0.5)))
+    side, rim = 2 * np.pi * 20 * 7, 2 * np.pi * (17 * np.pi / 2 * 3 + 3 * 3)
+    assert found.type == "free"
+    assert area(disk, found.triangles) == pytest.approx(side + rim, rel=0.01)
+
+
 def test_noise_of_a_file_does_not_matter():
     of = surface(PLATE)
     shaken = fem.SurfaceMesh(
