@@ -16,7 +16,7 @@ from codesign.cli.stress_file import load_file, repair_document, unit_hints
 from codesign.cli.stress_mesh import literal_facets, mesh_places
 from codesign.cli.stress_options import StressInputError, parse_acceleration, parse_load, parse_support
 from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
-from codesign.errors import ModelError
+from codesign.errors import FileError, ModelError
 from codesign.files import check_target
 from codesign.parts.load_case import strength_document
 from codesign.units import MILLIMETER
@@ -82,8 +82,7 @@ def stress_document(
         asked.append(PlacedText(text.rpartition(":")[0].strip(), place, what))
     edge_length = None if edge_length_mm is None else edge_length_mm * MILLIMETER
     exclusion = None if exclusion_mm is None else exclusion_mm * MILLIMETER
-    for target in filter(None, (vtu, png)):
-        check_target(target)
+    _check_targets(path, vtu, png)
     surface, repaired = load_file(path, scale, repair)
     body = None if acceleration is None else parse_acceleration(acceleration)
     solved = _solve(surface, asked, material, edge_length, exclusion, smooth, simplify, body)
@@ -92,6 +91,18 @@ def stress_document(
     document["repair"] = repair_document(repaired)
     document["warnings"] += unit_hints(surface, scale, solved.result.max_displacement)
     return document
+
+
+def _check_targets(part: Path, vtu: Path | None, png: Path | None) -> None:
+    """Raises: FileError: a file that cannot be written, the part itself, or one file twice."""
+    taken = {part.resolve(): "the part itself"}
+    for option, target in (("--vtu", vtu), ("--png", png)):
+        if target is None:
+            continue
+        if target.resolve() in taken:
+            raise FileError(f"{option} {target}: is {taken[target.resolve()]}; name another file")
+        taken[target.resolve()] = f"the file of {option} too"
+        check_target(target)
 
 
 def _solve(

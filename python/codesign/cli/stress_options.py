@@ -96,11 +96,14 @@ def parse_load(text: str, scale: float) -> tuple[Place, AskedLoad]:
 
     Raises: StressInputError.
     """
-    where, colon, load = text.rpartition(":")
-    if not colon:
-        raise StressInputError(f"load {text!r}: expected 'SELECTION: fx fy fz', or pressure p, or traction tx ty tz")
+    where, _, load = text.rpartition(":")
     words = load.replace(",", " ").split()
-    kind = words.pop(0) if words and words[0] in ("force", "traction", "pressure") else "force"
+    kind = words.pop(0) if words and words[0].isalpha() else "force"
+    if not words or ":" not in where or kind not in ("force", "traction", "pressure"):
+        raise StressInputError(
+            f"load {text!r}: expected 'SELECTION: fx fy fz' (N), 'SELECTION: pressure p' or 'SELECTION: traction tx ty "
+            "tz' (MPa)"
+        )
     values = _numbers(",".join(words), 1 if kind == "pressure" else 3, text)
     if not any(values):
         raise StressInputError(f"load {text!r}: the {kind} is zero")
@@ -114,8 +117,11 @@ def parse_support(text: str, scale: float) -> tuple[Place, str]:
     Raises: StressInputError.
     """
     where, _, axes = (part.strip() for part in text.rpartition(":"))
-    if ":" in where and axes and set(axes) <= set("xyz"):
-        return parse_selection(where, scale), axes
+    if ":" in where and axes:
+        if set(axes) <= set("xyz") and len(set(axes)) == len(axes):
+            return parse_selection(where, scale), axes
+        if axes.isalpha() and not where.startswith("face:"):
+            raise StressInputError(f"support {text!r}: {axes!r} is no set of directions, such as x, yz or xyz")
     return parse_selection(text, scale), "xyz"
 
 
@@ -154,5 +160,6 @@ def _numbers(text: str, count: int, whole: str) -> tuple[float, ...]:
     if any(value and not SMALLEST <= abs(value) <= LARGEST for value in values if math.isfinite(value)):
         raise StressInputError(f"{whole!r}: numbers must be between {SMALLEST:g} and {LARGEST:g}, or zero")
     if len(values) != count or not all(math.isfinite(value) for value in values):
-        raise StressInputError(f"{whole!r}: expected {count} numbers, found {text.strip()!r}")
+        wanted = "a finite number" if count == 1 else f"{count} finite numbers"
+        raise StressInputError(f"{whole!r}: expected {wanted}, found {text.strip()!r}")
     return values

@@ -16,6 +16,7 @@ from codesign.fem.stitching import Points, Triangles
 
 TOLERANCE = 2e-4  # of the extent, if none is given
 _RESOLUTION = 1e-7  # of the extent: heights of triangles below it are rounding of single precision
+_LARGEST = 1e30  # m: the powers of a larger extent are no numbers
 _FEWEST = 4  # triangles of a solid
 
 
@@ -74,13 +75,14 @@ def repair_surface(surface: SurfaceMesh, tolerance: float | None = None) -> tupl
         MeshError: what is wrong, and why it could not be repaired.
         ValueError: a tolerance that is not positive.
     """
-    if not len(surface.triangles):
-        raise MeshError(_fault(surface))
+    reason = _fault(surface)
+    extent = math.hypot(*np.ptp(surface.points, axis=0).tolist()) if len(surface.points) else 0.0
+    if reason and not (len(surface.triangles) and 0.0 < extent < _LARGEST):
+        raise MeshError(reason)
     if tolerance is None:
-        tolerance = TOLERANCE * float(np.linalg.norm(np.ptp(surface.points, axis=0)))
+        tolerance = TOLERANCE * extent
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"tolerance = {tolerance}: a positive number of meters is needed")
-    reason = _fault(surface)
     points, triangles = np.array(surface.points), np.array(surface.triangles, dtype=np.int64)
     if not reason:
         return surface, _measured(RepairReport("", tolerance, (0.0, 0.0), (0.0, 0.0), (0, 0), (0, 0)), surface, surface)

@@ -89,7 +89,10 @@ class NamedFace:
         names = list(surface.face_names)
         if self.name not in names:
             known = [name for name in names if name]
-            raise ModelError(f"no face {self.name!r}; {nearest(self.name, known)}")
+            hint = (
+                nearest(self.name, known) if known else "the file names none: choose by near:, box:, normal: or hole:"
+            )
+            raise ModelError(f"no face {self.name!r}; {hint}")
         chosen: Triangles = np.asarray(surface.face) == names.index(self.name)
         return chosen
 

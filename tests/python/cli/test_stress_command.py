@@ -10,7 +10,7 @@ import pytest
 
 from codesign.cli.stress import stress_document
 from codesign.cli.stress_options import AskedLoad, StressInputError, find_material, parse_load
-from codesign.errors import MeshError
+from codesign.errors import FileError, MeshError
 from codesign.parts.materials import named_material
 from vtu_files import read_vtu
 
@@ -80,14 +80,17 @@ def test_materials_by_name_and_by_numbers():
 @pytest.mark.parametrize(
     ("fix", "load", "message"),
     [
-        (["near:0,0"], [PULL], "expected 3 numbers"),
+        (["near:0,0"], [PULL], "expected 3 finite numbers"),
         (["close:0,0,0"], [PULL], "expected near:"),
         (["normal:0,0,0"], [PULL], "direction is zero"),
-        (["normal:-1,0,0"], ["normal:1,0,0"], "expected 3 numbers"),
+        (["normal:-1,0,0"], ["normal:1,0,0"], "expected 'SELECTION: fx fy fz'"),
         (["normal:-1,0,0"], ["normal:1,0,0: 0 0 0"], "force is zero"),
-        (["normal:-1,0,0"], ["normal:1,0,0: 1 nan 0"], "expected 3 numbers"),
+        (["normal:-1,0,0"], ["normal:1,0,0: 1 nan 0"], "expected 3 finite numbers"),
         (["box:500,0,0,600,1,1"], [PULL], "selects no"),
         ([], [PULL], "--fix"),
+        (["normal:-1,0,0: q"], [PULL], "'q' is no set of directions"),
+        (["normal:-1,0,0: xx"], [PULL], "'xx' is no set of directions"),
+        (["normal:-1,0,0"], ["normal:1,0,0: moment 1 2 3"], "expected 'SELECTION: fx fy fz'"),
     ],
 )
 def test_selections_that_make_no_sense_are_refused(bar, fix, load, message):
@@ -102,6 +105,28 @@ def test_fields_and_picture_are_written(bar, tmp_path):
     assert {"displacement", "stress", "von_mises"} <= set(field.point_data)
     assert len(field.cell_data["error"]) == len(field.cells)
     assert png.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("vtu", "png", "message"),
+    [
+        ("bar.stl", None, "--vtu .*is the part itself"),
+        (None, "bar.stl", "--png .*is the part itself"),
+        ("a.x", "a.x", "--png .*is the file of --vtu too"),
+    ],
+)
+def test_no_output_replaces_the_part_or_another_output(bar, vtu, png, message):
+    before = bar.read_bytes()
+    targets = [None if name is None else bar.parent / name for name in (vtu, png)]
+    with pytest.raises(FileError, match=message):
+        stress_document(bar, 1e-3, named_material("ergal"), ["normal:-1,0,0"], [PULL], 5.0, *targets)
+    assert bar.read_bytes() == before
+
+
+@pytest.mark.parametrize("scale", [1e300, 1e-300])
+def test_scales_beyond_all_measure_are_one_message(bar, scale):
+    with pytest.raises(MeshError, match="check the scale"):
+        stress_document(bar, scale, named_material("ergal"), ["normal:-1,0,0"], [PULL])
 
 
 def test_loads_accept_commas_and_spaces():

@@ -59,10 +59,10 @@ def test_gravity_is_carried_by_the_clamp(bar):
 @pytest.mark.parametrize(
     ("fix", "load", "options", "message"),
     [
-        (ROLLERS, ["normal:1,0,0: pressure 1 2"], {}, "expected 1 numbers"),
+        (ROLLERS, ["normal:1,0,0: pressure 1 2"], {}, "expected a finite number"),
         (ROLLERS, ["normal:1,0,0: traction 0 0 0"], {}, "the traction is zero"),
         (ROLLERS, [], {}, "at least one of each"),
-        (ROLLERS, [], {"acceleration": "0 0"}, "expected 3 numbers"),
+        (ROLLERS, [], {"acceleration": "0 0"}, "expected 3 finite numbers"),
         (ROLLERS, [], {"acceleration": "0 0 0"}, "is zero"),
     ],
 )
