@@ -71,6 +71,18 @@ def release(run: str) -> None:
         _pools.pop(key).close()
 
 
+def _local_workers(address: str) -> int:
+    """N of local:N, or 0 for a scheduler's address. Raises: ExecutionError: neither."""
+    kind, _, rest = address.partition(":")
+    if kind != "local":
+        if not rest.strip("/"):
+            raise ExecutionError(f"cluster {address!r}: expected a scheduler's address tcp://host:port, or local:N")
+        return 0
+    if not rest.isdecimal() or int(rest) < 1:
+        raise ExecutionError(f"cluster {address!r}: expected local:N with N Dask workers, at least one")
+    return int(rest)
+
+
 class DaskExecutor:
     """Evaluations on a Dask cluster; workers may join and leave at any time.
 
@@ -78,7 +90,7 @@ class DaskExecutor:
         address: a scheduler's address (tcp://host:port), or local:N for N Dask workers on this machine.
         cache: file of the cache on this machine; workers on other machines have their own.
 
-    Raises: ExecutionError if dask.distributed is missing or the scheduler cannot be reached.
+    Raises: ExecutionError if the address makes no sense, dask.distributed is missing or no scheduler answers.
     """
 
     def __init__(self, study: StudyRef, address: str, limits: Limits, cache: str | Path | None) -> None:
@@ -93,8 +105,7 @@ class DaskExecutor:
         self._threads, self._counted, self._seen = 0, float("-inf"), time.monotonic()
         self._cluster: Any = None
         try:
-            if address.startswith("local:"):
-                count = int(address.removeprefix("local:"))
+            if count := _local_workers(address):
                 self._cluster = distributed.LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None)
             self._client = distributed.Client(self._cluster or address, timeout=CONNECT_LIMIT, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:

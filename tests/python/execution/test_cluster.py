@@ -37,6 +37,12 @@ def test_local_cluster_gives_the_same_rows(tmp_path, whole: Run) -> None:
     assert identities(run) == identities(whole)
 
 
+@pytest.mark.parametrize("address", ["local:0", "local:x", "local:-1", "local:", "here", ""])
+def test_addresses_that_make_no_sense_are_refused_at_once(tmp_path, address) -> None:
+    with pytest.raises(ExecutionError, match="expected"):
+        optimize(fake(), out=tmp_path / "run", cluster=address, cache=None, generations=5)
+
+
 def test_lost_and_joined_workers_lose_nothing(tmp_path, whole: Run) -> None:
     """A Dask worker is killed in mid-run, another joins later."""
     with (
