@@ -6,6 +6,7 @@ One compressed file per design, beside the run: `details/<values>.npz`.
 from __future__ import annotations
 
 import json
+import logging
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,8 @@ from numpy.typing import NDArray
 from codesign.files import replacing
 from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
+
+logger = logging.getLogger(__name__)
 
 FOLDER = "details"
 SAMPLES = 1200  # kept of a flight history: one a pixel of a wide chart
@@ -119,12 +122,13 @@ def load_detail(path: Path) -> Detail:
 
 
 def load_details(run_directory: Path) -> dict[str, Detail]:
-    """All readable details of a run by `detail_key`; a damaged file counts as absent."""
+    """All readable details of a run by `detail_key`; a damaged file counts as absent, with a warning."""
     found = {}
     for path in sorted((run_directory / FOLDER).glob("*.npz")):
         try:
             detail = load_detail(path)
-        except (OSError, ValueError, KeyError, zipfile.BadZipFile):
+        except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+            logger.warning("%s is left out: %s: %s", path, type(error).__name__, error)
             continue
         found[detail_key(detail.evaluation)] = detail
     return found

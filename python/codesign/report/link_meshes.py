@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import logging
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +16,8 @@ from codesign.errors import UrdfError
 from codesign.robot.description import RobotDescription
 from codesign.robot.package import resolve_mesh
 from codesign.transforms import Matrix
+
+logger = logging.getLogger(__name__)
 
 # Where packages are looked for: variable -> folder below each of its entries that holds packages.
 SEARCH_PATHS = {
@@ -49,15 +52,20 @@ class LinkMeshes:
 def link_meshes(visuals: str, packages: tuple[Path, ...]) -> LinkMeshes:
     """Meshes of the links of the URDF `visuals` (package://…); none if its package is not found.
 
-    A link whose mesh is missing or unreadable is left out, so that its plain shape is shown.
+    None either, with a warning, if the URDF cannot be read. A link whose mesh is missing or unreadable is left out, so
+    that its plain shape is shown.
     """
     nothing = LinkMeshes({}, {})
     if not visuals or not packages:
         return nothing
     try:
         path = resolve_mesh(visuals, packages=packages)
-        robot = RobotDescription.load(path, as_published=True)
     except UrdfError:
+        return nothing
+    try:
+        robot = RobotDescription.load(path, as_published=True)
+    except UrdfError as error:
+        logger.warning("plain shapes are drawn instead of %s: %s", visuals, error)
         return nothing
     found: dict[str, list[LinkMesh]] = {}
     for link in robot.link_names:

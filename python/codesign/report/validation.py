@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import logging
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from codesign.problem.design_space import DesignValue
+
+logger = logging.getLogger(__name__)
 
 FILE = "validation.json"
 ORIGINAL = "original"
@@ -89,8 +92,12 @@ class Validation:
 
 
 def load_validation(directory: Path) -> Validation | None:
-    """The validation kept with a run; None if there is none, or it cannot be read."""
+    """The validation kept with a run; None if there is none, or, with a warning, if it cannot be read."""
+    path = directory / FILE
+    if not path.exists():
+        return None
     try:
-        return Validation.from_json((directory / FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError, TypeError, KeyError):
+        return Validation.from_json(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        logger.warning("%s is left out, validate again: %s: %s", path, type(error).__name__, error)
         return None

@@ -170,7 +170,9 @@ def _agemoea(settings: Settings, _n_objectives: int, common: dict[str, Any]) -> 
     try:
         from pymoo.algorithms.moo import age, age2
     except Exception as error:  # what pymoo raises
-        raise ExecutionError(f"algorithm {settings.algorithm} needs the package numba: pip install numba") from error
+        raise ExecutionError(
+            f"algorithm {settings.algorithm} needs the package numba (pip install numba): {error}"
+        ) from error
     return (age.AGEMOEA if settings.algorithm == "agemoea" else age2.AGEMOEA2)(**common)
 
 

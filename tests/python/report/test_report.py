@@ -182,11 +182,12 @@ def test_details_come_back_as_they_were_kept(tmp_path):
     assert np.allclose(part.points, kept.parts["jetpack_bracket"].points, atol=1e-7)
 
 
-def test_damaged_details_count_as_absent(tmp_path):
+def test_damaged_details_count_as_absent_and_are_told(tmp_path, caplog):
     kept = detail(synthetic_run.evaluate(synthetic_run.BASELINE))
     path = save_detail(tmp_path / "details", kept)
     path.write_bytes(path.read_bytes()[:1000])
     assert load_details(tmp_path) == {}
+    assert f"{path} is left out" in caplog.text
     assert detail_key(kept.evaluation) == "15-42-80-108"
 
 
