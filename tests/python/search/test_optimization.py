@@ -29,7 +29,7 @@ def tell_all(search, space: FakeStudy, count: int, batch: int) -> list[tuple[int
     return asked
 
 
-@pytest.mark.parametrize("algorithm", sorted(set(BUILT_IN) - {"random", "listed"}))
+@pytest.mark.parametrize("algorithm", sorted(set(BUILT_IN) - {"random", "listed", "surrogate"}))
 @pytest.mark.parametrize("batch", [12, 1])
 def test_evolution_is_deterministic_and_never_asks_twice(algorithm: str, batch: int) -> None:
     if algorithm.startswith("age"):
