@@ -142,7 +142,7 @@ def reproduction_section(study: Study, published: Path) -> str:
     rows = []
     for name, file in ROBOTS.items():
         log = as_published(study, published / file, study.config.flight.trajectory)
-        script = objective_families(log)["script"]
+        script = objective_families([log])["script"]
         numbers = [f"{script[k]:.6f}" for k in ("momentum", "joint_velocity")] + [f"{script['thrust']:.5f} N"]
         rows.append((name, *(numbers if log.completed else [f"lost at {log.failure_time:.2f} s", "", ""])))
     return table(("robot as published", "momentum", "joint velocity", "thrust"), rows)
@@ -155,7 +155,7 @@ def validation_published(study: Study, published: Path) -> str:
     for robot, file in ROBOTS.items():
         for name in names:
             log = as_published(study, published / file, name)
-            families[robot, name] = objective_families(log)["script"] if log.completed else None
+            families[robot, name] = objective_families([log])["script"] if log.completed else None
     rows = []
     for robot in ("Optim1", "Optim3"):
         for key, label in (("momentum", "momentum"), ("joint_velocity", "joint velocity"), ("thrust", "thrust")):

@@ -91,7 +91,7 @@ void bind_evaluate(py::module_& m) {
 
   py::class_<DesignResult>(m, "DesignResult")
       .def_readonly("parts", &DesignResult::parts, "PartAnalysis in the order of the cases")
-      .def_readonly("flight", &DesignResult::flight)
+      .def_readonly("flights", &DesignResult::flights, "FlightLog, one per seed")
       .def_property_readonly(
           "seconds",
           [](const DesignResult& result) {
@@ -112,10 +112,10 @@ void bind_evaluate(py::module_& m) {
   m.def("linked_libraries", &fem::linked_libraries,
         "Versions of the shared libraries that decide digits, as loaded: CHOLMOD, OpenBLAS and its "
         "kernel, C library.");
-  m.def("evaluate", &evaluate, "parts"_a, "urdf"_a, "flight"_a,
+  m.def("evaluate", &evaluate, "parts"_a, "urdf"_a, "flight"_a, "seeds"_a,
         py::call_guard<py::gil_scoped_release>(),
-        "Meshes and solves every part, loads the robot and flies it: the native half of the chain "
-        "in one call, without the GIL.");
+        "Meshes and solves every part, loads the robot and flies it once for every seed of the "
+        "disturbances: the native half of the chain in one call, without the GIL.");
 }
 
 }  // namespace codesign

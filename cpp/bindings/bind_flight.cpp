@@ -10,6 +10,7 @@
 #include "bindings/py_model.hpp"
 #include "dynamics/box_qp.hpp"
 #include "dynamics/flight.hpp"
+#include "dynamics/flight_start.hpp"
 
 namespace py = pybind11;
 
@@ -124,6 +125,9 @@ void bind_histories(py::class_<FlightLog>& log) {
   bind_history<&L::momentum>(log, "momentum", Shape::kRows,
                              "(N, 6) linear, angular about the center of mass");
   bind_history<&L::momentum_error>(log, "momentum_error", Shape::kRows, "(N, 6) E_l, E_w");
+  bind_history<&L::unmodeled_force>(log, "unmodeled_force", Shape::kRows,
+                                    "(N, 6) force and moment about the center of mass that the "
+                                    "momentum observer estimates [N, N m]; 0 without observer");
   bind_history<&L::thrust>(log, "thrust", Shape::kRows, "(N, jets) [N]");
   bind_history<&L::thrust_rate_command>(log, "thrust_rate_command", Shape::kRows,
                                         "(N, jets) [N/s]");
@@ -144,6 +148,10 @@ std::optional<std::string> reason_text(const FlightLog& log) {
   switch (log.failure_reason) {
     case FailureReason::kNotFailed:
       return std::nullopt;
+    case FailureReason::kNoHover:
+      return "no hover near the initial state";
+    case FailureReason::kNoFuel:
+      return "the tank is empty";
     case FailureReason::kMomentumQp:
       return "momentum QP not solved";
     case FailureReason::kTorqueQp:
@@ -208,6 +216,7 @@ void bind_log(py::module_& m) {
       .def_readonly("max_torque", &FlightLog::max_torque, "[Nm]")
       .def_readonly("max_joint_speed", &FlightLog::max_joint_speed, "[rad/s]")
       .def_readonly("min_clearance", &FlightLog::min_clearance, "[m]")
+      .def_readonly("fuel_burnt", &FlightLog::fuel_burnt, "[kg]")
       .def_readonly("qp_failures", &FlightLog::qp_failures)
       .def_readonly("total_qp_iterations", &FlightLog::total_qp_iterations)
       .def_readonly("profile", &FlightLog::profile)
@@ -235,6 +244,32 @@ void bind_flight(py::module_& m) {
       "Fly the model along the settings' trajectory. The model must have been loaded with "
       "joints=settings.joints. A lost flight is a status of the log. Raises ValueError if model "
       "and settings do not fit each other.");
+  m.def(
+      "fitted_settings",
+      [](const PyModel& model, const FlightSettings& settings) {
+        FlightSettings result = fitted(model, settings);
+        const FlightStart start = flight_start(model, result);
+        result.base_pose.topLeftCorner<3, 3>() = start.state.base.R;
+        result.base_pose.topRightCorner<3, 1>() = start.state.base.p;
+        result.initial_joints = start.state.joints;
+        result.initial_thrusts = start.thrusts;
+        return result;
+      },
+      py::arg("model"), py::arg("settings"),
+      "The settings with what they leave to the model: its joint ranges where they give none, and "
+      "the state that the flight starts in where it is a trimmed hover. Raises ValueError if model "
+      "and settings do not fit each other.");
+  m.def(
+      "simulate_flights",
+      [](const PyModel& model, const FlightSettings& settings,
+         const std::vector<std::uint64_t>& seeds) {
+        const FlightSettings copy = settings;
+        const py::gil_scoped_release release;
+        return simulate_flights(model, copy, seeds);
+      },
+      py::arg("model"), py::arg("settings"), py::arg("seeds"),
+      "The same flight once for every seed of its disturbances, one log each; as "
+      "simulate_flight otherwise.");
   m.def(
       "momentum_qps",
       [](const PyModel& model, const FlightSettings& settings, const FlightLog& log, int every) {

@@ -116,7 +116,8 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("attitude_derivative", &Gains::attitude_derivative, "c1")
       .def_readwrite("posture", &Gains::posture, "(joints,) K_s [1/s]")
       .def_readwrite("torque_proportional", &Gains::torque_proportional, "k_P [1/s]")
-      .def_readwrite("torque_integral", &Gains::torque_integral, "k_I [1/s^2]");
+      .def_readwrite("torque_integral", &Gains::torque_integral, "k_I [1/s^2]")
+      .def_readwrite("observer", &Gains::observer, "of the momentum observer [1/s]; 0: none");
 
   py::class_<Weights> weights(m, "Weights", "Weights of the momentum QP and the torque QP.");
   bind_keywords(weights);
@@ -131,8 +132,11 @@ void bind_control_settings(py::module_& m) {
 
   py::class_<Limits> limits(m, "Limits", "Ranges of joints, thrusts and torques.");
   bind_keywords(limits);
-  limits.def_readwrite("joint_lower", &Limits::joint_lower, "(joints,) [rad], before scaling")
-      .def_readwrite("joint_upper", &Limits::joint_upper, "(joints,) [rad], before scaling")
+  limits
+      .def_readwrite("joint_lower", &Limits::joint_lower,
+                     "(joints,) [rad], before scaling; empty: the model's")
+      .def_readwrite("joint_upper", &Limits::joint_upper,
+                     "(joints,) [rad], before scaling; empty: the model's")
       .def_readwrite("joint_range_scale", &Limits::joint_range_scale, "(joints,)")
       .def_readwrite("joint_speed", &Limits::joint_speed, "[rad/s]")
       .def_readwrite("joint_slope", &Limits::joint_slope, "[1/rad]")
@@ -196,6 +200,8 @@ void bind_control_settings(py::module_& m) {
   disturbances
       .def_readwrite("wind_force", &Disturbances::wind_force,
                      "(3,) on the base's origin, world axes [N]")
+      .def_readwrite("wind_velocity", &Disturbances::wind_velocity,
+                     "(3,) of the air that drags, world axes [m/s]")
       .def_readwrite("gust_deviation", &Disturbances::gust_deviation,
                      "(3,) standard deviation of the gusts [N]")
       .def_readwrite("gust_time", &Disturbances::gust_time, "correlation time [s]")
@@ -209,16 +215,63 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("seed", &Disturbances::seed);
 }
 
+void bind_plant_settings(py::module_& m) {
+  py::class_<TrimSettings> trim(m, "TrimSettings", "Which hover a flight starts in.");
+  bind_keywords(trim);
+  trim.def_readwrite("joints", &TrimSettings::joints, "names of those that may move")
+      .def_readwrite("tilt_weight", &TrimSettings::tilt_weight, "[1/rad]")
+      .def_readwrite("thrust_weight", &TrimSettings::thrust_weight, "[1/N]")
+      .def_readwrite("largest_step", &TrimSettings::largest_step,
+                     "of a joint in one iteration [rad, m]")
+      .def_readwrite("tolerance", &TrimSettings::tolerance, "of the residual [N, N m]")
+      .def_readwrite("iterations", &TrimSettings::iterations, "at most");
+
+  py::class_<Friction> friction(
+      m, "Friction",
+      "Of the joints' drives, in the plant only: viscous s' + coulomb tanh(s' / slip_speed).");
+  bind_keywords(friction);
+  friction.def_readwrite("viscous", &Friction::viscous, "(joints,) [N m s/rad]; empty: none")
+      .def_readwrite("coulomb", &Friction::coulomb, "(joints,) [N m]; empty: none")
+      .def_readwrite("slip_speed", &Friction::slip_speed, "of the smooth sign [rad/s]");
+
+  py::class_<Delays> delays(m, "Delays", "How late the robot gets what the controllers ask for.");
+  bind_keywords(delays);
+  delays
+      .def_readwrite("momentum", &Delays::momentum,
+                     "thrust rates and joint velocities; whole steps of the loop [s]")
+      .def_readwrite("torque", &Delays::torque, "whole periods of the torque loop [s]")
+      .def_readwrite("torque_lag", &Delays::torque_lag, "time constant of the drives [s]; 0: none");
+
+  py::class_<DragArea> drag(m, "DragArea",
+                            "What air drags: force -0.5 rho area |u| u, u against the air.");
+  bind_keywords(drag);
+  drag.def_readwrite("frame", &DragArea::frame)
+      .def_readwrite("position", &DragArea::position, "(3,) in the frame [m]")
+      .def_readwrite("area", &DragArea::area, "C_d A [m^2]");
+
+  py::class_<Tank> tank(m, "Tank",
+                        "Fuel on board, part of its link's inertia at the start; the controller "
+                        "does not see it go.");
+  bind_keywords(tank);
+  tank.def_readwrite("frame", &Tank::frame)
+      .def_readwrite("position", &Tank::position, "(3,) of the fuel, in the frame [m]")
+      .def_readwrite("fuel", &Tank::fuel, "[kg]")
+      .def_readwrite("consumption", &Tank::consumption, "[kg/(N s)]");
+}
+
 void bind_settings(py::module_& m) {
   py::class_<FlightSettings> settings(
       m, "FlightSettings",
       "Everything that decides a flight besides the robot; SI units. Vectors over joints have the "
       "order of `joints`, vectors over jets that of `actuators`. Assign lists and arrays whole.");
   bind_keywords(settings);
-  settings.def_readwrite("step", &FlightSettings::step, "of the control loop [s]")
+  settings
+      .def_readwrite("step", &FlightSettings::step, "of the momentum loop, jets and samples [s]")
       .def_readwrite("duration", &FlightSettings::duration, "[s]")
+      .def_readwrite("torque_updates", &FlightSettings::torque_updates,
+                     "of the torque loop per step, evenly spaced")
       .def_readwrite("integrator", &FlightSettings::integrator)
-      .def_readwrite("substeps", &FlightSettings::substeps, "plant steps per control step")
+      .def_readwrite("substeps", &FlightSettings::substeps, "plant steps per torque update")
       .def_readwrite("rotation_deadband", &FlightSettings::rotation_deadband,
                      "base rotations of a plant step below this are dropped [rad]; published: 1e-6")
       .def_readwrite("joints", &FlightSettings::joints, "names")
@@ -228,6 +281,17 @@ void bind_settings(py::module_& m) {
       .def_readwrite("initial_thrusts", &FlightSettings::initial_thrusts, "(jets,) [N]")
       .def_readwrite("initial_free_fall", &FlightSettings::initial_free_fall,
                      "first step without jets and torques, as published")
+      .def_readwrite("trim", &FlightSettings::trim,
+                     "TrimSettings: start in the hover nearest to the initial state; None: in it")
+      .def_readwrite("posture_reference", &FlightSettings::posture_reference,
+                     "(joints,) [rad]; empty: the angles at the start")
+      .def_readwrite("rotor_inertia", &FlightSettings::rotor_inertia,
+                     "(joints,) of the drives as their joints feel it [kg m^2]; empty: none")
+      .def_readwrite("friction", &FlightSettings::friction)
+      .def_readwrite("delays", &FlightSettings::delays)
+      .def_readwrite("drag", &FlightSettings::drag, "list of DragArea")
+      .def_readwrite("air_density", &FlightSettings::air_density, "[kg/m^3]")
+      .def_readwrite("tank", &FlightSettings::tank, "Tank or None")
       .def_readwrite("command_speeds", &FlightSettings::command_speeds)
       .def_readwrite("trajectory", &FlightSettings::trajectory, "list of CommandWindow")
       .def_readwrite("reference", &FlightSettings::reference)
@@ -249,6 +313,7 @@ void bind_settings(py::module_& m) {
 void bind_flight_settings(py::module_& m) {
   bind_reference_settings(m);
   bind_control_settings(m);
+  bind_plant_settings(m);
   bind_settings(m);
 }
 

@@ -18,7 +18,8 @@ double seconds_since(Clock::time_point start) {
 }  // namespace
 
 DesignResult evaluate(const std::vector<fem::PartCase>& parts, const std::string& urdf,
-                      const dynamics::FlightSettings& flight) {
+                      const dynamics::FlightSettings& flight,
+                      const std::vector<std::uint64_t>& seeds) {
   DesignResult result;
   Clock::time_point start = Clock::now();
   for (const fem::PartCase& part : parts) result.parts.push_back(fem::analyze_part(part));
@@ -27,7 +28,7 @@ DesignResult evaluate(const std::vector<fem::PartCase>& parts, const std::string
   dynamics::UrdfOptions options;
   options.joints = flight.joints;
   const dynamics::Model model = dynamics::load_urdf(urdf, options);
-  result.flight = dynamics::simulate_flight(model, flight);
+  result.flights = dynamics::simulate_flights(model, flight, seeds);
   result.flight_seconds = seconds_since(start);
   return result;
 }

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "dynamics/disturbance.hpp"
+#include "dynamics/drives.hpp"
+#include "dynamics/flight_start.hpp"
 #include "dynamics/momentum_controller.hpp"
+#include "dynamics/momentum_observer.hpp"
 #include "dynamics/objectives.hpp"
 #include "dynamics/plant.hpp"
 #include "dynamics/torque_controller.hpp"
@@ -20,20 +22,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
-void require_fit(const Model& model, const FlightSettings& settings) {
-  validate(settings);
-  if (model.fixed_base) throw std::invalid_argument("simulate_flight: the model's base is fixed");
-  bool same = model.joints.size() == settings.joints.size();
-  for (std::size_t i = 0; same && i < model.joints.size(); ++i) {
-    same = model.joints[i].name == settings.joints[i];
-  }
-  if (!same) {
-    throw std::invalid_argument(
-        "simulate_flight: the model's joints are not those of the settings; load it with "
-        "joints=settings.joints");
-  }
-}
 
 // A contact point resolved to its frame.
 struct WatchedPoint {
@@ -58,14 +46,15 @@ class Stopwatch {
 // Everything the loop carries from step to step. The member functions are the items of one step.
 class Flight {
  public:
-  Flight(const Model& model, const FlightSettings& settings);
+  Flight(const Model& model, const FlightSettings& settings, const FlightStart& start);
   FlightLog run();
 
  private:
-  bool advance_plant(int k);
+  FailureReason advance_plant(int k);
   void advance_jets(int k);
   bool update_dynamics();
   FailureReason control(int k);
+  FailureReason update_torque();
   FailureReason check_limits();
   void command_jets();
   double lowest_point() const;
@@ -74,20 +63,26 @@ class Flight {
 
   const Model& model_;
   const FlightSettings& settings_;
+  bool hovers_;
   RobotState state_;
   RobotTerms terms_;
   JointSpace joint_space_;
   Plant plant_;
+  Drives drives_;
   PlantInputs inputs_;
   Gusts gusts_;
   std::vector<WatchedPoint> points_;
   std::vector<ThrustState> jets_;
-  Eigen::VectorXd thrust_, thrust_rate_, command_, joint_velocity_, force_, joint_force_;
+  Eigen::VectorXd thrust_, last_thrust_, thrust_rate_, command_, joint_velocity_, force_,
+      joint_force_;
   ControllerOrigin origin_;
   ReferenceGenerator reference_generator_;
   Reference reference_;
+  MomentumObserver observer_;
+  Vector6d unmodeled_ = Vector6d::Zero();
   MomentumTask task_;
   MomentumQp qp_;
+  DelayLine outputs_;  // of the momentum QP
   BoxQpSolver qp_solver_;
   TorqueController torque_controller_;
   double com_error_ = 0.0, attitude_error_ = 0.0;
@@ -95,27 +90,23 @@ class Flight {
   Stopwatch watch_;
 };
 
-RobotState initial_state(const FlightSettings& settings) {
-  RobotState state;
-  state.base.p = settings.base_pose.topRightCorner<3, 1>();
-  state.base.R = settings.base_pose.topLeftCorner<3, 3>();
-  state.joints = settings.initial_joints;
-  state.velocity.setZero(kBaseDofs + settings.initial_joints.size());
-  return state;
-}
-
-Flight::Flight(const Model& model, const FlightSettings& settings)
+Flight::Flight(const Model& model, const FlightSettings& settings, const FlightStart& start)
     : model_(model),
       settings_(settings),
-      state_(initial_state(settings)),
-      terms_(model, settings.actuators),
+      hovers_(start.hovers),
+      state_(start.state),
+      terms_(model, settings.actuators, settings.rotor_inertia),
       joint_space_(model.joint_count()),
       plant_(model, settings),
+      drives_(settings),
       gusts_(settings),
-      thrust_(settings.initial_thrusts),
+      thrust_(start.thrusts),
+      last_thrust_(start.thrusts),
       reference_generator_(settings, Vector3d::Zero(), Matrix3d::Identity()),
+      observer_(settings.gains.observer, settings.step),
       task_(static_cast<int>(settings.actuators.size()), model.joint_count()),
       qp_(static_cast<int>(settings.actuators.size()) + model.joint_count()),
+      outputs_(static_cast<int>(std::lround(settings.delays.momentum / settings.step))),
       qp_solver_(qp_.g.size() > 0 ? static_cast<int>(qp_.g.size()) : 1),
       torque_controller_(settings) {
   const auto jets = static_cast<Index>(settings.actuators.size());
@@ -127,19 +118,30 @@ Flight::Flight(const Model& model, const FlightSettings& settings)
   for (const ContactPoint& point : settings.contact_points) {
     points_.push_back({frame_index(model, point.frame), point.position});
   }
-  for (const double thrust : settings.initial_thrusts) jets_.push_back({thrust, 0.0});
+  for (const double thrust : start.thrusts) jets_.push_back({thrust, 0.0});
 }
 
-// Item 1: the state moves on under the torques and thrusts of the last step.
-bool Flight::advance_plant(int k) {
-  if (k == 0 && !settings_.initial_free_fall) return true;
+// Item 1: the state moves on under the thrusts of the last step; the torques, too, or as often as
+// the torque loop updates them.
+FailureReason Flight::advance_plant(int k) {
+  if (k == 0 && !settings_.initial_free_fall) return FailureReason::kNotFailed;
   inputs_.base_force = gusts_.next();
-  return plant_.advance(terms_, joint_space_, inputs_, state_);
+  for (int i = 0; i < settings_.torque_updates; ++i) {
+    if (i > 0) {
+      update_motion_terms(model_, state_, terms_);
+      if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return FailureReason::kSingularMass;
+      const FailureReason reason = k > 0 ? update_torque() : FailureReason::kNotFailed;
+      if (reason != FailureReason::kNotFailed) return reason;
+    }
+    if (!plant_.advance(terms_, joint_space_, inputs_, state_)) return FailureReason::kSingularMass;
+  }
+  return plant_.fuel_left() < 0.0 ? FailureReason::kNoFuel : FailureReason::kNotFailed;
 }
 
 // Item 2: the thrusts move on under the commands of the last step.
 void Flight::advance_jets(int k) {
   if (k == 0) return;
+  last_thrust_ = thrust_;
   for (std::size_t i = 0; i < jets_.size(); ++i) {
     const auto jet = static_cast<Index>(i);
     jets_[i] = advance(settings_.actuators[i], jets_[i], command_[jet], settings_.step);
@@ -155,21 +157,34 @@ bool Flight::update_dynamics() {
 // Items 3 to 5: references, momentum QP, torques.
 FailureReason Flight::control(int k) {
   if (k == 0) {
-    origin_ = controller_origin(state_, terms_);
+    origin_ = controller_origin(settings_, state_, terms_);
     reference_generator_ = ReferenceGenerator(settings_, terms_.com, state_.base.R);
   }
   reference_ = reference_generator_.update(command_at(settings_.trajectory, k, settings_.step));
 
-  build_momentum_task(model_, settings_, origin_, state_, terms_, thrust_, reference_, task_);
+  jet_map(terms_, task_.A);
+  unmodeled_ =
+      observer_.update(terms_.momentum, modeled_momentum_rate(terms_, task_.A, last_thrust_),
+                       modeled_momentum_rate(terms_, task_.A, thrust_));
+  build_momentum_task(model_, settings_, origin_, state_, terms_, thrust_, reference_, unmodeled_,
+                      task_);
   build_momentum_qp(settings_, origin_, task_, state_, thrust_, qp_);
   watch_.lap(log_.profile.task);
   const BoxQpResult& solution = qp_solver_.solve(qp_.H, qp_.g, qp_.lower, qp_.upper);
   watch_.lap(log_.profile.momentum_qp);
   if (solution.status != QpStatus::kSolved) return FailureReason::kMomentumQp;
-  thrust_rate_ = solution.x.head(thrust_.size());
-  joint_velocity_ = solution.x.tail(joint_velocity_.size());
+  const Eigen::VectorXd& outputs = outputs_.pass(solution.x);
+  thrust_rate_ = outputs.head(thrust_.size());
+  joint_velocity_ = outputs.tail(joint_velocity_.size());
   command_jets();
+  inputs_.thrust = thrust_;
+  const FailureReason reason = update_torque();
+  watch_.lap(log_.profile.torque);
+  return reason;
+}
 
+// Item 5, also between the samples: torques for the joint velocities commanded last.
+FailureReason Flight::update_torque() {
   force_ = -terms_.bias;
   add_jet_forces(model_, terms_, thrust_, force_);
   joint_space_.reduce_force(force_, joint_force_);
@@ -178,9 +193,7 @@ FailureReason Flight::control(int k) {
                                 joint_velocity_) != QpStatus::kSolved) {
     return FailureReason::kTorqueQp;
   }
-  inputs_.torque = torque_controller_.torque();
-  inputs_.thrust = thrust_;
-  watch_.lap(log_.profile.torque);
+  inputs_.torque = drives_.act(torque_controller_.torque());
   return FailureReason::kNotFailed;
 }
 
@@ -215,9 +228,8 @@ double Flight::lowest_point() const {
   return terms_.kin.base_position.z() + lowest - settings_.ground_height;
 }
 
-using RowMajorRotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
 void write_rotation(const Matrix3d& R, History& history, int k) {
+  using RowMajorRotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   Eigen::Map<RowMajorRotation>(history.row(k).data()) = R;
 }
 
@@ -240,6 +252,7 @@ void Flight::log_sample(int k) {
   error.tail<3>() -= reference_.rotation * (origin_.base_inertia * reference_.angular_velocity);
   log.momentum.row(k) = terms_.momentum.transpose();
   log.momentum_error.row(k) = error.transpose();
+  log.unmodeled_force.row(k) = unmodeled_.transpose();
   log.thrust.row(k) = thrust_.transpose();
   log.thrust_rate_command.row(k) = thrust_rate_.transpose();
   log.thrust_command.row(k) = command_.transpose();
@@ -269,12 +282,12 @@ FlightLog Flight::run() {
   log_ =
       make_flight_log(samples, model_.joint_count(), static_cast<int>(settings_.actuators.size()));
   log_.step = settings_.step;
+  if (!hovers_) fail(FailureReason::kNoHover, 0);
   if (!update_dynamics()) fail(FailureReason::kSingularMass, 0);
   watch_ = {};
   for (int k = 0; k < samples && log_.status == FlightStatus::kCompleted; ++k) {
     check_interrupt();
-    FailureReason reason = FailureReason::kNotFailed;
-    if (!advance_plant(k)) reason = FailureReason::kSingularMass;
+    FailureReason reason = advance_plant(k);
     advance_jets(k);
     watch_.lap(log_.profile.plant);
     if (!state_.velocity.allFinite() || !state_.joints.allFinite() || !thrust_.allFinite()) {
@@ -291,6 +304,7 @@ FlightLog Flight::run() {
     }
     if (reason != FailureReason::kNotFailed) fail(reason, k);
   }
+  if (settings_.tank) log_.fuel_burnt = settings_.tank->fuel - plant_.fuel_left();
   return std::move(log_);
 }
 
@@ -306,54 +320,26 @@ void summarize(const Model& model, const FlightSettings& settings, FlightLog& lo
   compute_objectives(settings, log);
 }
 
-RobotState logged_state(const FlightLog& log, int k) {
-  RobotState state;
-  state.base.p = log.base_position.row(k).transpose();
-  state.base.R = Eigen::Map<const RowMajorRotation>(log.base_rotation.row(k).data());
-  state.joints = log.joint_positions.row(k).transpose();
-  state.velocity = log.velocity.row(k).transpose();
-  return state;
-}
-
 }  // namespace
 
-FlightLog simulate_flight(const Model& model, const FlightSettings& settings) {
-  require_fit(model, settings);
-  FlightLog log = Flight(model, settings).run();
+FlightLog simulate_flight(const Model& model, const FlightSettings& asked) {
+  const FlightSettings settings = fitted(model, asked);
+  const FlightStart start = flight_start(model, settings);
+  FlightLog log = Flight(model, settings, start).run();
   if (log.samples < log.time.rows()) truncate(log);
   summarize(model, settings, log);
   return log;
 }
 
-std::vector<MomentumQp> momentum_qps(const Model& model, const FlightSettings& settings,
-                                     const FlightLog& log, int every) {
-  require_fit(model, settings);
-  if (every < 1) throw std::invalid_argument("momentum_qps: every must be at least 1");
-  if (log.velocity.cols() != model.dofs() || log.step != settings.step) {
-    throw std::invalid_argument("momentum_qps: the log is not of this model and these settings");
+std::vector<FlightLog> simulate_flights(const Model& model, const FlightSettings& settings,
+                                        const std::vector<std::uint64_t>& seeds) {
+  std::vector<FlightLog> logs;
+  FlightSettings drawn = settings;
+  for (const std::uint64_t seed : seeds) {
+    drawn.disturbances.seed = seed;
+    logs.push_back(simulate_flight(model, drawn));
   }
-  std::vector<MomentumQp> qps;
-  if (log.samples == 0) return qps;
-  const int jets = static_cast<int>(settings.actuators.size());
-  RobotTerms terms(model, settings.actuators);
-  update_terms(model, logged_state(log, 0), terms);
-  const ControllerOrigin origin = controller_origin(logged_state(log, 0), terms);
-  ReferenceGenerator generator(settings, terms.com, logged_state(log, 0).base.R);
-  MomentumTask task(jets, model.joint_count());
-  MomentumQp qp(jets + model.joint_count());
-  for (int k = 0; k < log.samples; ++k) {
-    check_interrupt();
-    const Reference& reference =
-        generator.update(command_at(settings.trajectory, k, settings.step));
-    if (k % every != 0) continue;
-    const RobotState state = logged_state(log, k);
-    const Eigen::VectorXd thrust = log.thrust.row(k).transpose();
-    update_terms(model, state, terms);
-    build_momentum_task(model, settings, origin, state, terms, thrust, reference, task);
-    build_momentum_qp(settings, origin, task, state, thrust, qp);
-    qps.push_back(qp);
-  }
-  return qps;
+  return logs;
 }
 
 }  // namespace codesign::dynamics

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "dynamics/flight_log.hpp"
@@ -14,6 +15,10 @@ namespace codesign::dynamics {
 // UrdfOptions::joints). A lost flight is a status of the log, not an exception.
 // Throws std::invalid_argument if settings and model do not fit each other.
 FlightLog simulate_flight(const Model& model, const FlightSettings& settings);
+
+// The same flight once for every seed of its disturbances.
+std::vector<FlightLog> simulate_flights(const Model& model, const FlightSettings& settings,
+                                        const std::vector<std::uint64_t>& seeds);
 
 // The momentum QPs of samples 0, every, 2 every, … of a flight, rebuilt from its log: to look into
 // a flight, or to compare solvers on the problems that occur. Throws std::invalid_argument if the

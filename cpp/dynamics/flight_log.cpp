@@ -15,6 +15,7 @@ FlightLog make_flight_log(int samples, int joints, int jets) {
   }
   log.momentum.resize(samples, 6);
   log.momentum_error.resize(samples, 6);
+  log.unmodeled_force.resize(samples, 6);
   for (History* jet : {&log.thrust, &log.thrust_rate_command, &log.thrust_command}) {
     jet->resize(samples, jets);
   }
@@ -27,12 +28,26 @@ FlightLog make_flight_log(int samples, int joints, int jets) {
 }
 
 void truncate(FlightLog& log) {
-  for (History* history :
-       {&log.time, &log.base_position, &log.base_rotation, &log.joint_positions, &log.velocity,
-        &log.com, &log.com_reference, &log.com_velocity_reference, &log.rotation_reference,
-        &log.angular_velocity_reference, &log.momentum, &log.momentum_error, &log.thrust,
-        &log.thrust_rate_command, &log.thrust_command, &log.joint_velocity_command, &log.torque,
-        &log.wind, &log.clearance}) {
+  for (History* history : {&log.time,
+                           &log.base_position,
+                           &log.base_rotation,
+                           &log.joint_positions,
+                           &log.velocity,
+                           &log.com,
+                           &log.com_reference,
+                           &log.com_velocity_reference,
+                           &log.rotation_reference,
+                           &log.angular_velocity_reference,
+                           &log.momentum,
+                           &log.momentum_error,
+                           &log.unmodeled_force,
+                           &log.thrust,
+                           &log.thrust_rate_command,
+                           &log.thrust_command,
+                           &log.joint_velocity_command,
+                           &log.torque,
+                           &log.wind,
+                           &log.clearance}) {
     history->conservativeResize(log.samples, Eigen::NoChange);
   }
   log.qp_iterations.conservativeResize(log.samples, Eigen::NoChange);

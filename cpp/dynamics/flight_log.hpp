@@ -14,6 +14,8 @@ enum class FlightStatus { kCompleted, kFailed };
 
 enum class FailureReason {
   kNotFailed,
+  kNoHover,        // no trimmed state to start from
+  kNoFuel,         // the tank is empty
   kMomentumQp,     // the momentum QP was not solved
   kTorqueQp,       // the torque QP was not solved
   kSingularMass,   // the mass matrix is singular
@@ -69,6 +71,7 @@ struct FlightLog {
   History angular_velocity_reference;  // (N, 3) base axes
   History momentum;                    // (N, 6) linear, angular about the center of mass
   History momentum_error;              // (N, 6) E_l, E_w
+  History unmodeled_force;             // (N, 6) the observer's force and moment about the CoM
   History thrust;                      // (N, jets)
   History thrust_rate_command;         // (N, jets)
   History thrust_command;              // (N, jets) unit as the dynamics: [N/s], [N] or [%]
@@ -84,6 +87,7 @@ struct FlightLog {
   double min_thrust = 0.0, max_thrust = 0.0;             // [N]
   double max_torque = 0.0, max_joint_speed = 0.0;        // [Nm], [rad/s]
   double min_clearance = 0.0;                            // [m]
+  double fuel_burnt = 0.0;                               // [kg]
   int qp_failures = 0;
   long total_qp_iterations = 0;
   FlightProfile profile;

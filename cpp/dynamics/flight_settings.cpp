@@ -52,6 +52,7 @@ void validate_run(const FlightSettings& s) {
     refuse("duration", "is not a whole number of steps");
   }
   if (s.substeps < 1) refuse("substeps", "must be at least 1");
+  if (s.torque_updates < 1) refuse("torque_updates", "must be at least 1");
   require_not_negative("rotation_deadband", s.rotation_deadband);
   if (!s.base_pose.allFinite() || rotation_error(s.base_pose.topLeftCorner<3, 3>()) > 1e-9 ||
       s.base_pose.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
@@ -93,8 +94,10 @@ void validate_robot(const FlightSettings& s) {
   require_size("initial_joints", s.initial_joints, joints, "joint");
   require_size("initial_thrusts", s.initial_thrusts, jets, "jet");
   require_size("gains.posture", s.gains.posture, joints, "joint");
-  require_size("limits.joint_lower", s.limits.joint_lower, joints, "joint");
-  require_size("limits.joint_upper", s.limits.joint_upper, joints, "joint");
+  if (s.limits.joint_lower.size() > 0 || s.limits.joint_upper.size() > 0) {
+    require_size("limits.joint_lower", s.limits.joint_lower, joints, "joint");
+    require_size("limits.joint_upper", s.limits.joint_upper, joints, "joint");
+  }
   require_size("limits.joint_range_scale", s.limits.joint_range_scale, joints, "joint");
   for (Eigen::Index i = 0; i < s.limits.joint_lower.size(); ++i) {
     if (!(s.limits.joint_lower[i] * s.limits.joint_range_scale[i] <
@@ -129,6 +132,8 @@ void validate_control(const FlightSettings& s) {
       !(s.reference.pitch_min <= s.reference.pitch_max)) {
     refuse("reference", "a lower angle limit is above the upper one");
   }
+  require_not_negative("gains.observer", s.gains.observer);
+  if (s.gains.observer * s.step >= 1.0) refuse("gains.observer", "is not below 1 / step");
   require_positive("gains.momentum_integral", s.gains.momentum_integral);
   require_not_negative("weights.momentum", s.weights.momentum);
   require_not_negative("weights.constant_inertia", s.weights.constant_inertia);
@@ -148,6 +153,46 @@ void validate_control(const FlightSettings& s) {
   require_positive("failure.joint_speed", s.failure.joint_speed);
 }
 
+void require_per_joint(const std::string& attribute, const Eigen::VectorXd& value,
+                       const FlightSettings& s) {
+  if (value.size() == 0) return;
+  require_size(attribute, value, s.joints.size(), "joint");
+  if (value.minCoeff() < 0.0) refuse(attribute, "has a negative value");
+}
+
+void require_multiple(const std::string& attribute, double value, double period) {
+  require_not_negative(attribute, value);
+  if (std::abs(value / period - std::round(value / period)) > 1e-6) {
+    refuse(attribute, "is not a whole number of periods of " + std::to_string(period) + " s");
+  }
+}
+
+void validate_plant(const FlightSettings& s) {
+  if (s.posture_reference.size() > 0) {
+    require_size("posture_reference", s.posture_reference, s.joints.size(), "joint");
+  }
+  if (s.trim && s.initial_free_fall) {
+    refuse("trim", "a robot that starts in hover does not fall: set initial_free_fall to false");
+  }
+  require_per_joint("rotor_inertia", s.rotor_inertia, s);
+  require_per_joint("friction.viscous", s.friction.viscous, s);
+  require_per_joint("friction.coulomb", s.friction.coulomb, s);
+  require_positive("friction.slip_speed", s.friction.slip_speed);
+  require_multiple("delays.momentum", s.delays.momentum, s.step);
+  require_multiple("delays.torque", s.delays.torque, s.step / s.torque_updates);
+  require_not_negative("delays.torque_lag", s.delays.torque_lag);
+  require_positive("air_density", s.air_density);
+  for (const DragArea& area : s.drag) {
+    require_not_negative("drag[" + area.frame + "].area", area.area);
+    if (!area.position.allFinite()) refuse("drag", "has a position that is not finite");
+  }
+  if (s.tank) {
+    require_positive("tank.fuel", s.tank->fuel);
+    require_not_negative("tank.consumption", s.tank->consumption);
+    if (!s.tank->position.allFinite()) refuse("tank.position", "is not finite");
+  }
+}
+
 void validate_disturbances(const FlightSettings& s) {
   const Disturbances& d = s.disturbances;
   // Random numbers stay within six deviations: a larger deviation could turn a scale negative.
@@ -162,6 +207,10 @@ void validate_disturbances(const FlightSettings& s) {
   if (d.thrust_scale.size() > 0) {
     require_size("disturbances.thrust_scale", d.thrust_scale, s.actuators.size(), "jet");
   }
+  if (!d.wind_velocity.allFinite()) refuse("disturbances.wind_velocity", "is not finite");
+  if (!d.wind_velocity.isZero(0.0) && s.drag.empty()) {
+    refuse("disturbances.wind_velocity", "acts on drag areas, and there are none");
+  }
   if (!d.wind_force.allFinite() || !d.gust_deviation.allFinite() ||
       d.gust_deviation.minCoeff() < 0.0) {
     refuse("disturbances", "wind_force and gust_deviation must be finite, the latter not negative");
@@ -174,6 +223,7 @@ void validate(const FlightSettings& settings) {
   validate_run(settings);
   validate_robot(settings);
   validate_control(settings);
+  validate_plant(settings);
   validate_disturbances(settings);
 }
 

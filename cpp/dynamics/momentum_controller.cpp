@@ -11,9 +11,18 @@ namespace codesign::dynamics {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-ControllerOrigin controller_origin(const RobotState& state, const RobotTerms& terms) {
+ControllerOrigin controller_origin(const FlightSettings& settings, const RobotState& state,
+                                   const RobotTerms& terms) {
   const Matrix3d inertia = state.base.R.transpose() * locked_inertia(terms.inertia) * state.base.R;
-  return {inertia, inertia.inverse(), state.joints};
+  const bool own = settings.posture_reference.size() > 0;
+  return {inertia, inertia.inverse(), own ? settings.posture_reference : state.joints};
+}
+
+Vector6d modeled_momentum_rate(const RobotTerms& terms, const Eigen::Ref<const Matrix6Xd>& A,
+                               const Eigen::Ref<const Eigen::VectorXd>& thrusts) {
+  Vector6d rate = A * thrusts;
+  rate[2] -= terms.inertia.subtrees[0].mass * kGravity;
+  return rate;
 }
 
 MomentumTask::MomentumTask(int jets, int joints) {
@@ -63,7 +72,8 @@ Vector3d wanted_angular_acceleration(const Gains& gains, const ControllerOrigin&
 void build_momentum_task(const Model& model, const FlightSettings& settings,
                          const ControllerOrigin& origin, const RobotState& state,
                          const RobotTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& thrusts,
-                         const Reference& reference, MomentumTask& task) {
+                         const Reference& reference, const Vector6d& unmodeled,
+                         MomentumTask& task) {
   const Eigen::Index jets = thrusts.size();
   const Eigen::Index joints = state.joints.size();
   jet_map(terms, task.A);
@@ -73,8 +83,7 @@ void build_momentum_task(const Model& model, const FlightSettings& settings,
   const Eigen::Index joint_columns = kBaseDofs;
   const double mass = terms.inertia.subtrees[0].mass;
   const Vector6d base_velocity = state.velocity.head<kBaseDofs>();
-  Vector6d momentum_rate = task.A * thrusts;
-  momentum_rate[2] -= mass * kGravity;
+  const Vector6d momentum_rate = modeled_momentum_rate(terms, task.A, thrusts) + unmodeled;
 
   // Linear part, world axes.
   const Gains& gains = settings.gains;

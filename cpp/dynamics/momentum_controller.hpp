@@ -33,7 +33,8 @@ struct ControllerOrigin {
   Eigen::VectorXd posture;               // s₀ (joints)
 };
 
-ControllerOrigin controller_origin(const RobotState& state, const RobotTerms& terms);
+ControllerOrigin controller_origin(const FlightSettings& settings, const RobotState& state,
+                                   const RobotTerms& terms);
 
 // E and δ above, then the constant-inertia rows: task is (jets + joints, 9), transposed so that its
 // columns are contiguous; offset is (9,).
@@ -44,10 +45,15 @@ struct MomentumTask {
   Eigen::Matrix<double, kTaskRows, 1> offset;
 };
 
+// unmodeled: rate of momentum that acts beside thrusts and weight (MomentumObserver), world axes.
 void build_momentum_task(const Model& model, const FlightSettings& settings,
                          const ControllerOrigin& origin, const RobotState& state,
                          const RobotTerms& terms, const Eigen::Ref<const Eigen::VectorXd>& thrusts,
-                         const Reference& reference, MomentumTask& task);
+                         const Reference& reference, const Vector6d& unmodeled, MomentumTask& task);
+
+// A T − (m g e₃; 0), the modeled rate of momentum under thrusts T (jets,), world axes.
+Vector6d modeled_momentum_rate(const RobotTerms& terms, const Eigen::Ref<const Matrix6Xd>& A,
+                               const Eigen::Ref<const Eigen::VectorXd>& thrusts);
 
 // min ½ uᵀHu + gᵀu, lower ≤ u ≤ upper.
 struct MomentumQp {

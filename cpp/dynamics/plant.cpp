@@ -1,8 +1,12 @@
 #include "dynamics/plant.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <stdexcept>
 
 #include "dynamics/disturbance.hpp"
+#include "dynamics/drives.hpp"
 
 namespace codesign::dynamics {
 
@@ -30,37 +34,67 @@ void displace(const Eigen::Ref<const Eigen::VectorXd>& displacement, RobotState&
 
 Plant::Plant(const Model& model, const FlightSettings& settings)
     : model_(scale_masses(model, body_mass_scales(settings.disturbances, model.body_count()))),
+      drag_(model, settings),
+      friction_(settings.friction),
       integrator_(settings.integrator),
       substeps_(settings.substeps),
-      step_(settings.step / settings.substeps),
+      step_(settings.step / settings.torque_updates / settings.substeps),
       rotation_deadband_(settings.rotation_deadband),
       has_model_masses_(settings.disturbances.mass_scale == 1.0 &&
-                        settings.disturbances.mass_deviation == 0.0),
+                        settings.disturbances.mass_deviation == 0.0 && !settings.tank),
       thrust_scale_(
           thrust_scales(settings.disturbances, static_cast<int>(settings.actuators.size()))),
       thrust_(thrust_scale_),
-      terms_(model, settings.actuators),
+      terms_(model, settings.actuators, settings.rotor_inertia),
       joint_space_(model.joint_count()),
       stage_(zero_state(model)),
       origin_(stage_) {
   for (Eigen::VectorXd* v : {&force_, &nu_dot_, &rate_, &rate_sum_, &acceleration_sum_}) {
     v->setZero(model.dofs());
   }
+  if (settings.tank) fill_tank(*settings.tank);
 }
 
-void Plant::acceleration(const RobotTerms& terms, JointSpace& joint_space,
+void Plant::fill_tank(const Tank& tank) {
+  const Frame& frame = model_.frames[static_cast<std::size_t>(frame_index(model_, tank.frame))];
+  tank_body_ = frame.body;
+  full_ = model_.bodies[static_cast<std::size_t>(tank_body_)].inertia;
+  fuel_position_ = frame.body_T_frame.p + frame.body_T_frame.R * tank.position;
+  fuel_ = tank_size_ = tank.fuel;
+  consumption_ = tank.consumption;
+  const RigidInertia empty =
+      full_ + RigidInertia{-tank.fuel, fuel_position_, Eigen::Matrix3d::Zero()};
+  if (!(empty.mass > 0.0) || Eigen::LLT<Eigen::Matrix3d>(empty.inertia).info() != Eigen::Success) {
+    throw std::invalid_argument("FlightSettings.tank: link \"" + tank.frame +
+                                "\" has less mass or inertia than the fuel in it");
+  }
+}
+
+// Takes the fuel of one period out of its body.
+void Plant::burn() {
+  if (tank_body_ == kNone) return;
+  fuel_ -= consumption_ * thrust_.sum() * step_ * substeps_;
+  model_.bodies[static_cast<std::size_t>(tank_body_)].inertia =
+      full_ +
+      RigidInertia{std::max(fuel_, 0.0) - tank_size_, fuel_position_, Eigen::Matrix3d::Zero()};
+}
+
+void Plant::acceleration(const RobotState& state, const RobotTerms& terms, JointSpace& joint_space,
                          const PlantInputs& inputs) {
   thrust_ = inputs.thrust.cwiseProduct(thrust_scale_);
   force_ = -terms.bias;
   add_jet_forces(model_, terms, thrust_, force_);
   force_.head<3>() += inputs.base_force;
+  drag_.add_forces(model_, terms, force_);
+  const Eigen::Index joints = state.joints.size();
+  add_friction(friction_, state.velocity.tail(joints), force_.tail(joints));
   joint_space.acceleration(inputs.torque, force_, nu_dot_);
 }
 
 bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs) {
-  update_terms(model_, state, terms_);
+  update_motion_terms(model_, state, terms_);
   if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return false;
-  acceleration(terms_, joint_space_, inputs);
+  acceleration(state, terms_, joint_space_, inputs);
   return true;
 }
 
@@ -69,7 +103,7 @@ bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const Plan
   for (int i = 0; i < substeps_; ++i) {
     const bool terms_known = i == 0 && has_model_masses_;
     if (terms_known) {
-      acceleration(terms, joint_space, inputs);
+      acceleration(state, terms, joint_space, inputs);
     } else if (!acceleration(state, inputs)) {
       return false;
     }
@@ -83,6 +117,7 @@ bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const Plan
     if (rate_.segment<3>(3).norm() < rotation_deadband_) rate_.segment<3>(3).setZero();
     displace(rate_, state);
   }
+  burn();
   return true;
 }
 

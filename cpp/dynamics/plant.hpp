@@ -2,20 +2,21 @@
 
 #include <Eigen/Core>
 
+#include "dynamics/drag.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "dynamics/joint_space.hpp"
 #include "dynamics/robot_terms.hpp"
 
 namespace codesign::dynamics {
 
-// Held over one control step.
+// Held over one period of the torque loop.
 struct PlantInputs {
   Eigen::VectorXd torque;      // (joints) [Nm]
   Eigen::VectorXd thrust;      // (jets) [N], as commanded: errors of the jets are the plant's
   Eigen::Vector3d base_force;  // on the base's origin, world axes [N]
 };
 
-// The flying robot: advances a state by one control step under held inputs.
+// The flying robot: advances a state by one period of the torque loop under held inputs.
 class Plant {
  public:
   Plant(const Model& model, const FlightSettings& settings);
@@ -25,12 +26,24 @@ class Plant {
   bool advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                RobotState& state);
 
+  double fuel_left() const { return fuel_; }  // [kg]; negative: more was burnt than there was
+
  private:
   bool acceleration(const RobotState& state, const PlantInputs& inputs);
-  void acceleration(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs);
+  void acceleration(const RobotState& state, const RobotTerms& terms, JointSpace& joint_space,
+                    const PlantInputs& inputs);
   bool runge_kutta(const PlantInputs& inputs, RobotState& state);
+  void fill_tank(const Tank& tank);
+  void burn();
 
   Model model_;
+  Drag drag_;
+  Friction friction_;
+  // The tank's body with all fuel, where the fuel is in its axes, and what is left of it.
+  int tank_body_ = kNone;
+  RigidInertia full_;
+  Eigen::Vector3d fuel_position_ = Eigen::Vector3d::Zero();
+  double fuel_ = 0.0, tank_size_ = 0.0, consumption_ = 0.0;
   Integrator integrator_;
   int substeps_;
   double step_;  // of one substep [s]

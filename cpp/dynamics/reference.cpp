@@ -32,7 +32,14 @@ ReferenceGenerator::ReferenceGenerator(const FlightSettings& settings, const Vec
       raw_rpy_(rotation_to_rpy(base_rotation)),
       com_filter_(settings_.com_time, step_),
       jerk_filter_(settings_.jerk_time, step_),
-      angular_filter_(settings_.angular_velocity_time, step_) {}
+      angular_filter_(settings_.angular_velocity_time, step_) {
+  if (!settings.trim) return;
+  // Where a robot hovers with its base tilted, it may stay so.
+  settings_.roll_min = std::min(settings_.roll_min, raw_rpy_.x());
+  settings_.roll_max = std::max(settings_.roll_max, raw_rpy_.x());
+  settings_.pitch_min = std::min(settings_.pitch_min, raw_rpy_.y());
+  settings_.pitch_max = std::max(settings_.pitch_max, raw_rpy_.y());
+}
 
 const Reference& ReferenceGenerator::update(const Command& command) {
   raw_rpy_ += step_ * Vector3d(command.roll * speeds_.roll, command.pitch * speeds_.pitch,

@@ -1,14 +1,16 @@
 #include "dynamics/robot_terms.hpp"
 
 #include <Eigen/Geometry>
+#include <utility>
 
 namespace codesign::dynamics {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-RobotTerms::RobotTerms(const Model& model, const std::vector<Actuator>& actuators)
-    : kin(model), velocity(model), inertia(model), forces(model) {
+RobotTerms::RobotTerms(const Model& model, const std::vector<Actuator>& actuators,
+                       Eigen::VectorXd rotors)
+    : kin(model), velocity(model), inertia(model), forces(model), rotor_inertia(std::move(rotors)) {
   mass_matrix.setZero(model.dofs(), model.dofs());
   bias.setZero(model.dofs());
   momentum_matrix.setZero(6, model.dofs());
@@ -26,13 +28,20 @@ RobotTerms::RobotTerms(const Model& model, const std::vector<Actuator>& actuator
 }
 
 void update_terms(const Model& model, const RobotState& state, RobotTerms& terms) {
+  update_motion_terms(model, state, terms);
+  centroidal_momentum_matrix(model, terms.kin, terms.inertia, terms.momentum_matrix);
+  terms.momentum.noalias() = terms.momentum_matrix * state.velocity;
+}
+
+void update_motion_terms(const Model& model, const RobotState& state, RobotTerms& terms) {
   forward_kinematics(model, state.base, state.joints, terms.kin);
   forward_velocities(model, terms.kin, state.velocity, terms.velocity);
   compute_inertias(model, terms.kin, terms.inertia);
   mass_matrix(model, terms.kin, terms.inertia, terms.mass_matrix);
+  if (terms.rotor_inertia.size() > 0) {
+    terms.mass_matrix.diagonal().tail(model.joint_count()) += terms.rotor_inertia;
+  }
   bias_forces(model, terms.kin, terms.inertia, terms.velocity, terms.forces, terms.bias);
-  centroidal_momentum_matrix(model, terms.kin, terms.inertia, terms.momentum_matrix);
-  terms.momentum.noalias() = terms.momentum_matrix * state.velocity;
   terms.com = center_of_mass(terms.kin, terms.inertia);
   const Vector3d com_offset = terms.inertia.subtrees[0].com;
   for (MountedActuator& jet : terms.jets) {
@@ -61,6 +70,20 @@ void add_jet_forces(const Model& model, const RobotTerms& terms,
               ? pose.axis().dot((jet.origin - pose.p).cross(force) + moment)
               : pose.axis().dot(force);
     }
+  }
+}
+
+void add_point_force(const Model& model, const KinematicsData& kin, int body, const Vector3d& point,
+                     const Vector3d& force, Eigen::Ref<Eigen::VectorXd> generalized) {
+  generalized.head<3>() += force;
+  generalized.segment<3>(3) += point.cross(force);
+  for (int i = body; i > 0;) {
+    const Body& moved = model.bodies[static_cast<std::size_t>(i)];
+    const BodyPose& pose = kin.bodies[static_cast<std::size_t>(i)];
+    generalized[model.column(moved)] += moved.type == JointType::kRevolute
+                                            ? pose.axis().dot((point - pose.p).cross(force))
+                                            : pose.axis().dot(force);
+    i = moved.parent;
   }
 }
 

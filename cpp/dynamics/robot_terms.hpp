@@ -32,13 +32,16 @@ struct MountedActuator {
 // All that a control step needs to know of the robot at one state. Allocated once; written by
 // update_terms.
 struct RobotTerms {
-  RobotTerms(const Model& model, const std::vector<Actuator>& actuators);
+  // rotor_inertia: (joints) of the drives at their joints [kg m²]; empty: none.
+  RobotTerms(const Model& model, const std::vector<Actuator>& actuators,
+             Eigen::VectorXd rotor_inertia = {});
 
   KinematicsData kin;
   VelocityData velocity;
   InertiaData inertia;
   ForceData forces;
-  Eigen::MatrixXd mass_matrix;  // M (6+n, 6+n)
+  Eigen::VectorXd rotor_inertia;
+  Eigen::MatrixXd mass_matrix;  // M (6+n, 6+n), rotors included
   Eigen::VectorXd bias;         // b (6+n,)
   Matrix6Xd momentum_matrix;    // C (6, 6+n)
   Vector6d momentum;            // (l; w) about the center of mass
@@ -47,6 +50,14 @@ struct RobotTerms {
 };
 
 void update_terms(const Model& model, const RobotState& state, RobotTerms& terms);
+
+// All but momentum and its matrix: what the equations of motion need.
+void update_motion_terms(const Model& model, const RobotState& state, RobotTerms& terms);
+
+// generalized (6+n,) += Jᵀ force at a point of a body; point from the base origin, world axes.
+void add_point_force(const Model& model, const KinematicsData& kin, int body,
+                     const Eigen::Vector3d& point, const Eigen::Vector3d& force,
+                     Eigen::Ref<Eigen::VectorXd> generalized);
 
 // generalized (6+n,) += Σ Jᵢᵀ (aᵢ; reactionᵢ aᵢ) Tᵢ for the thrusts T (jets,) [N].
 void add_jet_forces(const Model& model, const RobotTerms& terms,

@@ -5,7 +5,7 @@
 namespace codesign::dynamics {
 
 TorqueController::TorqueController(const FlightSettings& settings)
-    : step_(settings.step),
+    : step_(settings.step / settings.torque_updates),
       proportional_(settings.gains.torque_proportional),
       integral_(settings.gains.torque_integral),
       weight_(settings.weights.torque),

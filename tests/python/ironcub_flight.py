@@ -97,6 +97,21 @@ def settings(trajectory: int = 1) -> dyn.FlightSettings:
     leg_range = [(-10, 112), (-45, 115), (-80, 80), (-45, 45), (-70, 5), (-25, 25)]
     ranges = np.deg2rad(np.array(torso_range + 2 * arm_range + 2 * leg_range, dtype=float))
     return dyn.FlightSettings(
+        step=0.008,
+        duration=42.0,
+        initial_free_fall=True,
+        command_speeds=dyn.CommandSpeeds(
+            front=0.9375, left=0.3125, up=0.9375, roll=np.deg2rad(18.75), pitch=np.deg2rad(43.75), yaw=np.deg2rad(43.75)
+        ),
+        reference=dyn.ReferenceSettings(
+            roll_min=np.deg2rad(-5.0),
+            roll_max=np.deg2rad(5.0),
+            pitch_min=np.deg2rad(-30.0),
+            com_time=1.5,
+            jerk_time=0.005,
+            rotation_gain=1.0,
+            angular_velocity_time=0.05,
+        ),
         joints=JOINTS,
         actuators=[dyn.Actuator(frame=frame, thrust_max=250.0, thrust_rate=200.0) for frame in JETS],
         base_pose=base_pose,
@@ -104,17 +119,42 @@ def settings(trajectory: int = 1) -> dyn.FlightSettings:
         initial_thrusts=np.full(4, 175.0),
         trajectory=windows(trajectory),
         symmetry_pairs=[(0, 1), (2, 3)],
-        gains=dyn.Gains(posture=np.array([30.0] * 3 + [20.0] * 8 + [30.0] * 12)),
+        gains=dyn.Gains(
+            momentum_proportional=1.5,
+            momentum_derivative=2.5 * 1.5**0.5,
+            momentum_integral=10.0,
+            attitude_proportional=50.0,
+            attitude_derivative=2.0 * 50.0**0.5,
+            posture=np.array([30.0] * 3 + [20.0] * 8 + [30.0] * 12),
+            torque_proportional=2.0 * 50.0**0.5,
+            torque_integral=50.0,
+        ),
+        weights=dyn.Weights(
+            momentum=10.0,
+            constant_inertia=150.0,
+            posture=2.5,
+            joint_velocity=10.0,
+            thrust_rate=0.01,
+            thrust_symmetry=0.1,
+            regularization=1e-4,
+            torque=1.1e-3,
+        ),
         limits=dyn.Limits(
             joint_lower=ranges[:, 0],
             joint_upper=ranges[:, 1],
             joint_range_scale=np.array([0.7] * 3 + [0.8] * 8 + [0.5] * 12),
+            joint_speed=np.deg2rad(45.0),
+            joint_slope=10.0,
+            thrust_slope=2.0,
+            torque=50.0,
+            torque_rate=300.0,
         ),
         groups=[
             dyn.JointGroup(name="torso", joints=TORSO, weight=2.0),
             dyn.JointGroup(name="left_arm", joints=LEFT_ARM),
             dyn.JointGroup(name="right_arm", joints=RIGHT_ARM),
         ],
+        failure=dyn.FailureLimits(com_error=2.0, attitude_error=0.5 * np.pi, joint_speed=50.0),
         contact_points=[
             dyn.ContactPoint(frame=frame, position=np.array([x, y, 0.0]))
             for frame in ("l_sole", "r_sole")

@@ -201,7 +201,10 @@ class PartAnalysis:
 
 class DesignResult:
     @property
-    def flight(self) -> dynamics.FlightLog: ...
+    def flights(self) -> list[dynamics.FlightLog]:
+        """
+        FlightLog, one per seed
+        """
     @property
     def parts(self) -> list[PartAnalysis]:
         """
@@ -218,9 +221,14 @@ def analyze_part(part: PartCase) -> PartAnalysis:
     Surface to safety factor. Raises MeshError, SolverError.
     """
 
-def evaluate(parts: collections.abc.Sequence[PartCase], urdf: str, flight: dynamics.FlightSettings) -> DesignResult:
+def evaluate(
+    parts: collections.abc.Sequence[PartCase],
+    urdf: str,
+    flight: dynamics.FlightSettings,
+    seeds: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+) -> DesignResult:
     """
-    Meshes and solves every part, loads the robot and flies it: the native half of the chain in one call, without the GIL.
+    Meshes and solves every part, loads the robot and flies it once for every seed of the disturbances: the native half of the chain in one call, without the GIL.
     """
 
 def library_versions() -> dict[str, str]:

@@ -15,7 +15,9 @@ __all__: list[str] = [
     "CommandSpeeds",
     "CommandWindow",
     "ContactPoint",
+    "Delays",
     "Disturbances",
+    "DragArea",
     "FailureLimits",
     "FirstOrderLag",
     "FlightLog",
@@ -23,6 +25,7 @@ __all__: list[str] = [
     "FlightProfile",
     "FlightSettings",
     "FlightStatus",
+    "Friction",
     "Gains",
     "Integrator",
     "JointGroup",
@@ -33,7 +36,9 @@ __all__: list[str] = [
     "QpStatus",
     "RateIntegrator",
     "ReferenceSettings",
+    "Tank",
     "Trim",
+    "TrimSettings",
     "Turbine",
     "Weights",
     "bias_forces",
@@ -45,6 +50,7 @@ __all__: list[str] = [
     "centroidal_momentum_matrix",
     "check_inertia",
     "check_urdf",
+    "fitted_settings",
     "forward_dynamics",
     "frame_bias_acceleration",
     "frame_jacobian",
@@ -60,6 +66,7 @@ __all__: list[str] = [
     "momentum_qps",
     "potential_energy",
     "simulate_flight",
+    "simulate_flights",
     "solve_box_qp",
     "trim_hover",
 ]
@@ -467,6 +474,13 @@ class Gains:
     @momentum_proportional.setter
     def momentum_proportional(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
+    def observer(self) -> float:
+        """
+        of the momentum observer [1/s]; 0: none
+        """
+    @observer.setter
+    def observer(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
     def posture(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         (joints,) K_s [1/s]
@@ -544,7 +558,7 @@ class Limits:
     @property
     def joint_lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        (joints,) [rad], before scaling
+        (joints,) [rad], before scaling; empty: the model's
         """
     @joint_lower.setter
     def joint_lower(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
@@ -572,7 +586,7 @@ class Limits:
     @property
     def joint_upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        (joints,) [rad], before scaling
+        (joints,) [rad], before scaling; empty: the model's
         """
     @joint_upper.setter
     def joint_upper(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
@@ -863,6 +877,191 @@ class Disturbances:
         """
     @wind_force.setter
     def wind_force(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def wind_velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of the air that drags, world axes [m/s]
+        """
+    @wind_velocity.setter
+    def wind_velocity(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+
+class TrimSettings:
+    """
+    Which hover a flight starts in.
+    """
+    def __copy__(self) -> TrimSettings: ...
+    def __deepcopy__(self, arg0: dict) -> TrimSettings: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def iterations(self) -> int:
+        """
+        at most
+        """
+    @iterations.setter
+    def iterations(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def joints(self) -> list[str]:
+        """
+        names of those that may move
+        """
+    @joints.setter
+    def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def largest_step(self) -> float:
+        """
+        of a joint in one iteration [rad, m]
+        """
+    @largest_step.setter
+    def largest_step(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_weight(self) -> float:
+        """
+        [1/N]
+        """
+    @thrust_weight.setter
+    def thrust_weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def tilt_weight(self) -> float:
+        """
+        [1/rad]
+        """
+    @tilt_weight.setter
+    def tilt_weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def tolerance(self) -> float:
+        """
+        of the residual [N, N m]
+        """
+    @tolerance.setter
+    def tolerance(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Friction:
+    """
+    Of the joints' drives, in the plant only: viscous s' + coulomb tanh(s' / slip_speed).
+    """
+    def __copy__(self) -> Friction: ...
+    def __deepcopy__(self, arg0: dict) -> Friction: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def coulomb(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [N m]; empty: none
+        """
+    @coulomb.setter
+    def coulomb(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def slip_speed(self) -> float:
+        """
+        of the smooth sign [rad/s]
+        """
+    @slip_speed.setter
+    def slip_speed(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def viscous(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [N m s/rad]; empty: none
+        """
+    @viscous.setter
+    def viscous(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+
+class Delays:
+    """
+    How late the robot gets what the controllers ask for.
+    """
+    def __copy__(self) -> Delays: ...
+    def __deepcopy__(self, arg0: dict) -> Delays: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def momentum(self) -> float:
+        """
+        thrust rates and joint velocities; whole steps of the loop [s]
+        """
+    @momentum.setter
+    def momentum(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def torque(self) -> float:
+        """
+        whole periods of the torque loop [s]
+        """
+    @torque.setter
+    def torque(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def torque_lag(self) -> float:
+        """
+        time constant of the drives [s]; 0: none
+        """
+    @torque_lag.setter
+    def torque_lag(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class DragArea:
+    """
+    What air drags: force -0.5 rho area |u| u, u against the air.
+    """
+
+    frame: str
+    def __copy__(self) -> DragArea: ...
+    def __deepcopy__(self, arg0: dict) -> DragArea: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def area(self) -> float:
+        """
+        C_d A [m^2]
+        """
+    @area.setter
+    def area(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) in the frame [m]
+        """
+    @position.setter
+    def position(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+
+class Tank:
+    """
+    Fuel on board, part of its link's inertia at the start; the controller does not see it go.
+    """
+
+    frame: str
+    def __copy__(self) -> Tank: ...
+    def __deepcopy__(self, arg0: dict) -> Tank: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def consumption(self) -> float:
+        """
+        [kg/(N s)]
+        """
+    @consumption.setter
+    def consumption(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def fuel(self) -> float:
+        """
+        [kg]
+        """
+    @fuel.setter
+    def fuel(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of the fuel, in the frame [m]
+        """
+    @position.setter
+    def position(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
 
 class FlightSettings:
     """
@@ -870,8 +1069,10 @@ class FlightSettings:
     """
 
     command_speeds: CommandSpeeds
+    delays: Delays
     disturbances: Disturbances
     failure: FailureLimits
+    friction: Friction
     gains: Gains
     integrator: Integrator
     limits: Limits
@@ -895,6 +1096,13 @@ class FlightSettings:
     @actuators.setter
     def actuators(self, arg0: collections.abc.Sequence[Actuator]) -> None: ...
     @property
+    def air_density(self) -> float:
+        """
+        [kg/m^3]
+        """
+    @air_density.setter
+    def air_density(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
     def base_pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
         """
         (4, 4)
@@ -905,6 +1113,13 @@ class FlightSettings:
     def contact_points(self) -> list[ContactPoint]: ...
     @contact_points.setter
     def contact_points(self, arg0: collections.abc.Sequence[ContactPoint]) -> None: ...
+    @property
+    def drag(self) -> list[DragArea]:
+        """
+        list of DragArea
+        """
+    @drag.setter
+    def drag(self, arg0: collections.abc.Sequence[DragArea]) -> None: ...
     @property
     def duration(self) -> float:
         """
@@ -955,12 +1170,26 @@ class FlightSettings:
     @joints.setter
     def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
     @property
+    def posture_reference(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [rad]; empty: the angles at the start
+        """
+    @posture_reference.setter
+    def posture_reference(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
     def rotation_deadband(self) -> float:
         """
         base rotations of a plant step below this are dropped [rad]; published: 1e-6
         """
     @rotation_deadband.setter
     def rotation_deadband(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def rotor_inertia(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) of the drives as their joints feel it [kg m^2]; empty: none
+        """
+    @rotor_inertia.setter
+    def rotor_inertia(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
     @property
     def samples(self) -> int:
         """
@@ -969,14 +1198,14 @@ class FlightSettings:
     @property
     def step(self) -> float:
         """
-        of the control loop [s]
+        of the momentum loop, jets and samples [s]
         """
     @step.setter
     def step(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
     def substeps(self) -> int:
         """
-        plant steps per control step
+        plant steps per torque update
         """
     @substeps.setter
     def substeps(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
@@ -993,12 +1222,33 @@ class FlightSettings:
         ],
     ) -> None: ...
     @property
+    def tank(self) -> Tank | None:
+        """
+        Tank or None
+        """
+    @tank.setter
+    def tank(self, arg0: Tank | None) -> None: ...
+    @property
+    def torque_updates(self) -> int:
+        """
+        of the torque loop per step, evenly spaced
+        """
+    @torque_updates.setter
+    def torque_updates(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
     def trajectory(self) -> list[CommandWindow]:
         """
         list of CommandWindow
         """
     @trajectory.setter
     def trajectory(self, arg0: collections.abc.Sequence[CommandWindow]) -> None: ...
+    @property
+    def trim(self) -> TrimSettings | None:
+        """
+        TrimSettings: start in the hover nearest to the initial state; None: in it
+        """
+    @trim.setter
+    def trim(self, arg0: TrimSettings | None) -> None: ...
 
 class FlightStatus:
     """
@@ -1155,6 +1405,11 @@ class FlightLog:
         [s], or None
         """
     @property
+    def fuel_burnt(self) -> float:
+        """
+        [kg]
+        """
+    @property
     def ground_touched(self) -> bool: ...
     @property
     def joint_positions(self) -> numpy.ndarray:
@@ -1268,6 +1523,11 @@ class FlightLog:
         """
     @property
     def total_qp_iterations(self) -> int: ...
+    @property
+    def unmodeled_force(self) -> numpy.ndarray:
+        """
+        (N, 6) force and moment about the center of mass that the momentum observer estimates [N, N m]; 0 without observer
+        """
     @property
     def velocity(self) -> numpy.ndarray:
         """
@@ -1397,6 +1657,11 @@ def check_urdf(content: bytes, is_utf8: bool = False) -> str:
         content: the text as bytes.
         is_utf8: read it as UTF-8, whatever byte order mark and XML declaration say.
     Raises: UrdfError naming line and element.
+    """
+
+def fitted_settings(model: Model, settings: FlightSettings) -> FlightSettings:
+    """
+    The settings with what they leave to the model: its joint ranges where they give none, and the state that the flight starts in where it is a trimmed hover. Raises ValueError if model and settings do not fit each other.
     """
 
 def forward_dynamics(
@@ -1568,6 +1833,13 @@ def potential_energy(
 def simulate_flight(model: Model, settings: FlightSettings) -> FlightLog:
     """
     Fly the model along the settings' trajectory. The model must have been loaded with joints=settings.joints. A lost flight is a status of the log. Raises ValueError if model and settings do not fit each other.
+    """
+
+def simulate_flights(
+    model: Model, settings: FlightSettings, seeds: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]
+) -> list[FlightLog]:
+    """
+    The same flight once for every seed of its disturbances, one log each; as simulate_flight otherwise.
     """
 
 def solve_box_qp(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ import numpy as np
 from codesign import _core
 from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families
-from codesign.chain.flight import find_trajectory, flight_settings, joint_names, refusals
+from codesign.chain.flight import find_trajectory, flight_seeds, flight_settings, joint_names, refusals
 from codesign.chain.judge import judge
 from codesign.chain.loads import case_settings
 from codesign.chain.provenance import provenance
@@ -67,11 +67,14 @@ def evaluate_with_fields(
 ) -> tuple[Evaluation, dict[str, _core.PartAnalysis], dyn.FlightLog | None]:
     """As `evaluate`, together with what its numbers were read from: stress field of each part, the flight if any.
 
+    Of several flights under paired disturbances, the first.
+
     Raises: CodesignError where the chain does.
     """
     _check_trajectory(study.config, trajectory)
     evaluation, result = _evaluate(study, design, trajectory, None)
-    return evaluation, dict(zip(evaluation.parts, result.parts, strict=True)), result.flight
+    flight = result.flights[0] if result.flights else None
+    return evaluation, dict(zip(evaluation.parts, result.parts, strict=True)), flight
 
 
 def _check_trajectory(config: StudyConfig, trajectory: str | None) -> None:
@@ -82,10 +85,10 @@ def _check_trajectory(config: StudyConfig, trajectory: str | None) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Computed:
-    """What the native code gave: analyses of the parts that were not known, the flight if there is one, times [s]."""
+    """What the native code gave: analyses of the parts that were not known, the flight for every seed, times [s]."""
 
     parts: list[_core.PartAnalysis]
-    flight: dyn.FlightLog | None
+    flights: list[dyn.FlightLog]
     seconds: dict[str, float]
 
 
@@ -95,11 +98,12 @@ def compute(
     """Meshes and solves the parts; flies the robot if the study has a flight."""
     if config.flight is None:
         start = time.perf_counter()
-        return Computed([_core.analyze_part(case) for case in cases], None, {"fem": time.perf_counter() - start})
-    settings = flight_settings(config.flight, find_trajectory(config, trajectory or config.flight.trajectory))
+        return Computed([_core.analyze_part(case) for case in cases], [], {"fem": time.perf_counter() - start})
+    name = trajectory or config.flight.trajectory
+    settings = flight_settings(config.flight, find_trajectory(config, name))
     with refusals(study.path):
-        result = _core.evaluate(cases, robot.to_text(), settings)
-    return Computed(list(result.parts), result.flight, result.seconds)
+        result = _core.evaluate(cases, robot.to_text(), settings, flight_seeds(config, name))
+    return Computed(list(result.parts), list(result.flights), result.seconds)
 
 
 def _evaluate(
@@ -149,22 +153,23 @@ def _flown(
     config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, result: Computed, trajectory: str | None
 ) -> dict[str, Any]:
     """Flight and objective families of an evaluation; both empty without a flight."""
-    flight = result.flight
-    if flight is None:
+    flights = result.flights
+    if not flights:
         return {"flight": {}, "objective_families": {}}
-    document = flown_document(config, flight, result.seconds["flight"], trajectory)
-    clearances = _clearances(config, parts, robot, flight)
+    document = flown_document(config, flights, result.seconds["flight"], trajectory)
+    clearances = _clearances(config, parts, robot, flights)
     return document | ({"flight": document["flight"] | {"interference": clearances}} if clearances else {})
 
 
 def flown_document(
-    config: StudyConfig, log: dyn.FlightLog, seconds: float, trajectory: str | None = None
+    config: StudyConfig, logs: Sequence[dyn.FlightLog], seconds: float, trajectory: str | None = None
 ) -> dict[str, Any]:
-    """What an evaluation says of a flight before clearances; objective families only if it was completed."""
+    """What an evaluation says of its flights before clearances; objective families only if all were completed."""
     name = trajectory or config.flown.trajectory
+    flight = flight_document(name, logs, config.flown, seconds, flight_seeds(config, name))
     return {
-        "flight": flight_document(name, log, config.flown, seconds),
-        "objective_families": objective_families(log) if log.completed else {},
+        "flight": flight,
+        "objective_families": objective_families(logs) if flight["completed"] else {},
     }
 
 
@@ -245,17 +250,18 @@ def _mass(document: Mapping[str, Any]) -> Inertial:
 
 
 def _clearances(
-    config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, flight: dyn.FlightLog
+    config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, flights: Sequence[dyn.FlightLog]
 ) -> dict[str, Any]:
-    """Clearances over the flown postures; empty if the study does not ask for them."""
-    history = flight.joint_positions[np.isfinite(flight.joint_positions).all(axis=1)]
+    """Clearances over the flown postures of all flights; empty if the study does not ask for them."""
+    history = np.concatenate([flight.joint_positions for flight in flights])
+    times = np.concatenate([flight.time for flight in flights])
+    finite = np.isfinite(history).all(axis=1)
+    history, times = history[finite], times[finite]
     if config.interference is None or not len(history):
         return {}
     slices = config.interference.slices
     placed = {part.name: (part.placements, part_pieces(parts[part.name], slices)) for part in config.parts}
-    return flown_interference(
-        robot, config.interference, placed, joint_names(config.flown), history, config.flown.step_s
-    )
+    return flown_interference(robot, config.interference, placed, joint_names(config.flown), history, times)
 
 
 @functools.lru_cache(maxsize=64)

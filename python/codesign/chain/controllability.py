@@ -55,6 +55,7 @@ class Controllability:
 
 def controllability(model: dyn.Model, settings: dyn.FlightSettings) -> Controllability:
     """Judges a robot and its actuators at the start posture of a flight. Raises: ValueError: a frame is unknown."""
+    settings = dyn.fitted_settings(model, settings)
     jets = _jets(model, settings)
     com = dyn.center_of_mass(model, settings.base_pose, settings.initial_joints)
     weight = np.array([0.0, 0.0, model.total_mass * GRAVITY, 0.0, 0.0, 0.0])

@@ -1,9 +1,9 @@
-"""A flight as JSON: objective families and tracking figures."""
+"""Flights as JSON: objective families and tracking figures. Several are one flight under paired disturbances."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from operator import attrgetter
 from typing import Any
 
@@ -14,45 +14,74 @@ from codesign.study.config import StudyConfig
 from codesign.study.flight_config import FlightConfig
 
 # Numbers of a flight in its document, SI units, None where they are not finite: name -> function of the log with its
-# histories. An objective or a constraint names them by path, `flight.max_torque`.
+# histories. An objective or a constraint names them by path, `flight.max_torque`. Of several flights, the worst.
 FLIGHT_NUMBERS: dict[str, Callable[[dyn.FlightLog], float]] = {
     name: attrgetter(name)
-    for name in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust", "max_torque", "min_clearance")
+    for name in (
+        "max_com_error",
+        "max_attitude_error",
+        "min_thrust",
+        "max_thrust",
+        "max_torque",
+        "min_clearance",
+        "fuel_burnt",
+    )
 }
+SMALLEST_IS_WORST = ("min_thrust", "min_clearance")
 SHORTEST_MISS = 1e-6  # of a flight that was lost in its last sample
 
 
-def objective_families(log: dyn.FlightLog) -> dict[str, dict[str, float]]:
-    """All objective families of a flight; a number that is not finite is left out."""
+def objective_families(logs: Sequence[dyn.FlightLog]) -> dict[str, dict[str, float]]:
+    """All objective families, means over the flights; a number that is not finite is left out."""
     families = {}
     for family in ("rms", "script", "paper"):
-        values = getattr(log, family)
-        named = {name: getattr(values, name) for name in FAMILY}
+        named = {name: math.fsum(getattr(getattr(log, family), name) for log in logs) / len(logs) for name in FAMILY}
         families[family] = {name: value for name, value in named.items() if math.isfinite(value)}
     return families
 
 
-def flight_document(trajectory: str, log: dyn.FlightLog, flight: FlightConfig, seconds: float) -> dict[str, Any]:
-    """Tracking figures of a flight for JSON, SI units; None for a number that is not finite.
+def flight_document(
+    trajectory: str, logs: Sequence[dyn.FlightLog], flight: FlightConfig, seconds: float, seeds: Sequence[int] = ()
+) -> dict[str, Any]:
+    """Tracking figures for JSON, SI units; None for a number that is not finite.
 
-    flight: its settings; missed_share is the part of the whole duration that a lost flight did not last.
-    seconds: processor time.
+    Args:
+        logs: the flight, once for every seed of its disturbances: each number is the worst of them, saturation that of
+            the first lost one, if any.
+        flight: its settings; missed_share is the part of the whole duration that a lost flight did not last.
+        seconds: processor time.   seeds: of the logs, where there are several.
     """
-    document: dict[str, Any] = {"trajectory": trajectory, "duration": (log.samples - 1) * log.step}
+    lasted = [flight.duration_s if log.completed else log.failure_time or 0.0 for log in logs]
+    first = logs[lasted.index(min(lasted))]  # that was lost, if any
+    document: dict[str, Any] = {"trajectory": trajectory, "duration": max(first.samples - 1, 0) * first.step}
     for name, number in FLIGHT_NUMBERS.items():
-        value = number(log)
-        document[name] = value if math.isfinite(value) else None
-    document["saturation"] = saturation(log, flight)
-    document["ground_touched"] = bool(log.ground_touched)
-    document["qp_failures"] = log.qp_failures
-    document["completed"] = log.completed
+        worst = min if name in SMALLEST_IS_WORST else max
+        values = [number(log) for log in logs]
+        document[name] = worst(values) if all(map(math.isfinite, values)) else None
+    document["saturation"] = saturation(first, flight)
+    document["ground_touched"] = any(log.ground_touched for log in logs)
+    document["qp_failures"] = sum(log.qp_failures for log in logs)
+    document["completed"] = first.completed
     document["missed_share"] = 0.0
     if not document["completed"]:
-        document["missed_share"] = max(1.0 - (log.failure_time or 0.0) / flight.duration_s, SHORTEST_MISS)
-        document["failure_time"] = log.failure_time
-        document["failure_reason"] = log.failure_reason
+        document["missed_share"] = max(1.0 - (first.failure_time or 0.0) / flight.duration_s, SHORTEST_MISS)
+        document["failure_time"] = first.failure_time
+        document["failure_reason"] = first.failure_reason
+    if len(logs) > 1:
+        document["seeds"] = [_seed_document(seed, log) for seed, log in zip(seeds, logs, strict=True)]
     document["seconds"] = seconds
     return document
+
+
+def _seed_document(seed: int, log: dyn.FlightLog) -> dict[str, Any]:
+    """What one of several flights gave."""
+    return {
+        "seed": seed,
+        "completed": log.completed,
+        "max_thrust": log.max_thrust,
+        "max_attitude_error": log.max_attitude_error,
+        "rms": objective_families([log])["rms"],
+    }
 
 
 def objective_parts(log: dyn.FlightLog, family: str, config: StudyConfig) -> dict[str, float]:

@@ -17,7 +17,7 @@ from codesign.study.flight_config import DisturbancesConfig, FlightConfig, Traje
 from codesign.transforms import pose
 from codesign.units import DEGREE
 
-PER_AXIS = ("wind_n", "gust_deviation_n")  # disturbances with a value for each axis
+PER_AXIS = ("wind_n", "wind_m_s", "gust_deviation_n")  # disturbances with a value for each axis
 TURBINE_COEFFICIENTS = ("K_T", "K_TT", "K_D", "K_DD", "K_TD", "B_U", "B_T", "B_D", "B_UU", "c")
 
 
@@ -78,11 +78,12 @@ def flight_settings(
     Raises: StudyError if there is no such jet model.
     """
     settings = dyn.FlightSettings()
-    settings.step = flight.step_s
+    _set_rates(settings, flight)
     settings.duration = flight.duration_s
     settings.joints = joint_names(flight)
     settings.actuators = actuators(flight, jet_model or flight.jet_model)
     _set_initial_state(settings, flight)
+    _set_plant(settings, flight)
     _set_references(settings, flight)
     _set_controller(settings, flight)
     settings.trajectory = [
@@ -109,6 +110,7 @@ def flight_settings(
 def _disturbances(disturbances: DisturbancesConfig) -> dyn.Disturbances:
     return dyn.Disturbances(
         wind_force=np.array(disturbances.wind_n),
+        wind_velocity=np.array(disturbances.wind_m_s),
         gust_deviation=np.array(disturbances.gust_deviation_n),
         gust_time=disturbances.gust_time_s,
         mass_scale=disturbances.mass_scale,
@@ -118,8 +120,68 @@ def _disturbances(disturbances: DisturbancesConfig) -> dyn.Disturbances:
     )
 
 
+def flight_seeds(config: StudyConfig, trajectory: str) -> list[int]:
+    """Seeds of the flights on a trajectory: the study's, or the one of `name@seed` or of a calm trajectory."""
+    flown = find_trajectory(config, trajectory)
+    return (
+        list(config.flown.seeds) if _is_drawn(trajectory, flown) and config.flown.seeds else [flown.disturbances.seed]
+    )
+
+
+def _is_drawn(trajectory: str, flown: TrajectoryConfig) -> bool:
+    sizes = flown.disturbances
+    return "@" not in trajectory and any([*sizes.gust_deviation_n, sizes.mass_deviation, sizes.thrust_deviation])
+
+
 def _per_joint(flight: FlightConfig, attribute: str) -> np.ndarray:
-    return np.array([getattr(group, attribute) for group in flight.joint_groups for _ in group.joints], dtype=float)
+    """(joints,) of what each group gives for all its joints or for each; (0,) where a list is left out."""
+    values = [
+        np.broadcast_to(value, len(group.joints))
+        for group in flight.joint_groups
+        if (value := getattr(group, attribute)) != []
+    ]
+    return np.concatenate(values).astype(float) if values else np.zeros(0)
+
+
+def _none_if_zero(values: np.ndarray) -> np.ndarray:
+    return values if values.any() else np.zeros(0)
+
+
+def _set_rates(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
+    torque_step = flight.torque_step_s or flight.step_s
+    settings.step = flight.step_s
+    settings.torque_updates = round(flight.step_s / torque_step)
+    settings.substeps = round(torque_step / (flight.plant_step_s or torque_step))
+    settings.integrator = getattr(dyn.Integrator, flight.integrator)
+
+
+def _set_plant(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
+    settings.rotor_inertia = _none_if_zero(_per_joint(flight, "rotor_inertia_kg_m2"))
+    settings.friction = dyn.Friction(
+        viscous=_none_if_zero(_per_joint(flight, "viscous_friction_n_m_per_rad_s")),
+        coulomb=_none_if_zero(_per_joint(flight, "coulomb_friction_n_m")),
+        slip_speed=flight.drives.slip_speed_rad_s,
+    )
+    settings.delays = dyn.Delays(
+        momentum=flight.drives.momentum_delay_s,
+        torque=flight.drives.torque_delay_s,
+        torque_lag=flight.drives.torque_lag_s,
+    )
+    if drag := flight.drag:
+        areas = np.broadcast_to(drag.areas_m2, len(drag.frames))
+        positions = drag.positions_m or [(0.0, 0.0, 0.0)] * len(drag.frames)
+        settings.drag = [
+            dyn.DragArea(frame=frame, position=np.array(position), area=float(area))
+            for frame, position, area in zip(drag.frames, positions, areas, strict=True)
+        ]
+        settings.air_density = drag.air_density_kg_m3
+    if tank := flight.tank:
+        settings.tank = dyn.Tank(
+            frame=tank.frame,
+            position=np.array(tank.position_m),
+            fuel=tank.fuel_kg,
+            consumption=tank.consumption_kg_per_n_s,
+        )
 
 
 def _set_initial_state(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
@@ -128,6 +190,11 @@ def _set_initial_state(settings: dyn.FlightSettings, flight: FlightConfig) -> No
     settings.initial_joints = np.array([angle for group in flight.joint_groups for angle in group.initial_rad])
     settings.initial_thrusts = np.broadcast_to(initial.thrust_n, len(flight.jets.frames))
     settings.initial_free_fall = initial.free_fall_first_step
+    settings.posture_reference = _per_joint(flight, "reference_rad")
+    if trim := initial.trim:
+        settings.trim = dyn.TrimSettings(
+            joints=trim.joints, tilt_weight=trim.tilt_weight, thrust_weight=trim.thrust_weight
+        )
 
 
 def actuators(flight: FlightConfig, jet_model: str) -> list[dyn.Actuator]:
@@ -208,6 +275,7 @@ def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
         posture=_per_joint(flight, "posture_gain_hz"),
         torque_proportional=gains.joint_proportional,
         torque_integral=gains.joint_integral,
+        observer=gains.observer_hz,
     )
     settings.weights = dyn.Weights(
         momentum=weights.momentum,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families, objective_parts
-from codesign.chain.flight import find_trajectory, flight_settings, joint_names, refusals
+from codesign.chain.flight import find_trajectory, flight_seeds, flight_settings, joint_names, refusals
 from codesign.chain.judge import FLIGHT_MISSED, loss
 from codesign.chain.provenance import provenance
 
@@ -32,25 +32,25 @@ def fly_robot(
     Raises: UrdfError, StudyError.
     """
     config = study.config
-    settings = flight_settings(config.flown, find_trajectory(config, trajectory or config.flown.trajectory), jets)
+    name = trajectory or config.flown.trajectory
+    settings = flight_settings(config.flown, find_trajectory(config, name), jets)
+    seeds = flight_seeds(config, name)
     start = time.perf_counter()
     model = dyn.load_urdf(robot, joints=joint_names(config.flown), as_published=as_published)
     loaded = time.perf_counter()
     with refusals(study.path):
-        log = dyn.simulate_flight(model, settings)
+        logs = dyn.simulate_flights(model, settings, seeds)
     end = time.perf_counter()
-    completed = log.completed
-    document = flight_document(trajectory or config.flown.trajectory, log, config.flown, end - loaded)
+    document = flight_document(name, logs, config.flown, end - loaded, seeds)
+    completed = document["completed"]
+    families = objective_families(logs)
     return {
         "robot": str(robot),
         "status": "completed" if completed else "lost",
         "reason": None if completed else loss(document),
-        "objectives": objective_families(log)[config.objectives.family],
-        "objective_families": objective_families(log),
-        "objective_parts": {
-            "rms": objective_parts(log, "rms", config),
-            "script": objective_parts(log, "script", config),
-        },
+        "objectives": families[config.objectives.family],
+        "objective_families": families,
+        "objective_parts": {family: objective_parts(logs[0], family, config) for family in ("rms", "script")},
         "constraints": {FLIGHT_MISSED: document["missed_share"]},
         "flight": document,
         "seconds": {"load": loaded - start, "flight": end - loaded, "total": end - start},

@@ -70,10 +70,10 @@ def _flown_only(study: StudyData, design: Design, config: StudyConfig, rivals: S
     parts = build_parts(study, design, config)
     built = time.perf_counter()
     result = compute(study, config, [], build_robot(study, design), None)
-    if result.flight is None:
+    if not result.flights:
         return None
     masses = {name: {MASSES: float(part.mass_properties().mass)} for name, part in parts.items()}
-    document = {"parts": masses, **flown_document(config, result.flight, result.seconds["flight"])}
+    document = {"parts": masses, **flown_document(config, result.flights, result.seconds["flight"])}
     chosen = [limit for limit in limits(config) if _early(limit.quantity) or limit.quantity.key == FLIGHT_MISSED]
     verdict = judge(config, document, study.functions, chosen)
     rival = None if verdict.status == "infeasible" else rival_of(rivals, verdict.objectives.values())

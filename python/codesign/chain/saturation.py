@@ -32,7 +32,8 @@ def saturation(log: dyn.FlightLog, flight: FlightConfig) -> dict[str, float]:
     """Shares from 0 to 1 of a flight; 0 for what the robot does not have.
 
     thrust_rate_share: mean commanded thrust rate over its limit. thrust_at_most, thrust_at_least, torque_at_limit,
-    joint_at_limit: samples in which any of them is within 1 % of its range of that end.
+    joint_at_limit: samples in which any of them is within 1 % of its range of that end; joints only where the study
+    gives ranges.
     """
     jets, limits = flight.jets, flight.limits
     count = len(jets.frames)
@@ -42,6 +43,8 @@ def saturation(log: dyn.FlightLog, flight: FlightConfig) -> dict[str, float]:
     )
     scales = np.array([group.range_scale for group in flight.joint_groups for _ in group.joints])
     ranges = np.array([r for group in flight.joint_groups for r in group.ranges_deg]).reshape(-1, 2) * DEGREE
+    if not len(ranges):
+        ranges = np.tile([-np.inf, np.inf], (len(scales), 1))
     low, high = ranges[:, 0] * scales, ranges[:, 1] * scales
     near_thrust, near_joint = NEAR * (most - least), NEAR * (high - low)
     with np.errstate(invalid="ignore"):  # the last sample of a lost flight may not be finite

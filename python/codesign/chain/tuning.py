@@ -81,8 +81,8 @@ def tune(study: StudyData, design: Design, trajectory: str | None = None) -> lis
         began = time.process_time()
         with refusals(study.path):
             log = dyn.simulate_flight(model, flight_settings(tried, flown))
-        document = flight_document(name, log, tried, time.process_time() - began)
-        momentum = objective_families(log)["rms"].get("momentum")
+        document = flight_document(name, [log], tried, time.process_time() - began)
+        momentum = objective_families([log])["rms"].get("momentum")
         trials.append(Trial(position, attitude, gains, poles(gains, inertia), document, momentum))
     return trials
 

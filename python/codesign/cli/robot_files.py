@@ -62,6 +62,7 @@ def write_robot_files(
     config = study.configured(design)
     settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
     robot = build_robot(study, design)
+    settings = dyn.fitted_settings(dyn.load_urdf(robot.to_text(), joints=settings.joints), settings)
     folder.mkdir(exist_ok=True)
     if any(kind in formats for kind in ROBOT):
         robot = write_urdf(study, robot, components, folder, settings.limits)

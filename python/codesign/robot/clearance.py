@@ -185,12 +185,12 @@ def flown_interference(
     parts: Mapping[str, tuple[Sequence[PartPlacement], Sequence[Matrix]]],
     joints: Sequence[str],
     history: Matrix,
-    step: float,
+    times: Matrix,
 ) -> dict[str, Any]:
     """Clearances of a flown design for JSON, SI units: both minima, and every pair and plume below the limit.
 
     robot: with the design's parts in it. parts: name -> its places and its convex pieces, part axes [m].
-    joints, history: joint names, and positions (n, joints) [rad] at times 0, step, 2 step … [s].
+    joints, history: joint names, and positions (n, joints) [rad] at times (n,) [s].
     """
     pieces: dict[str, list[Matrix]] = {}
     for places, slices in parts.values():
@@ -198,15 +198,22 @@ def flown_interference(
     chosen = telling_samples(history, settings.postures)
     postures = {name: history[chosen, k] for k, name in enumerate(joints)}
     report = check_interference(robot, settings, postures, pieces)
-    times = [float(row) * step for row in chosen]
+    chosen_times = [float(times[row]) for row in chosen]
     return {
         "body_clearance": report.min_clearance,
         "plume_clearance": report.min_plume_clearance,
         "bodies": [
-            {"links": [c.first, c.second], "clearance": c.distance, "time": times[c.posture]} for c in report.clearances
+            {"links": [c.first, c.second], "clearance": c.distance, "time": chosen_times[c.posture]}
+            for c in report.clearances
         ],
         "plumes": [
-            {"jet": c.first, "link": c.second, "clearance": c.distance, "angle": c.angle, "time": times[c.posture]}
+            {
+                "jet": c.first,
+                "link": c.second,
+                "clearance": c.distance,
+                "angle": c.angle,
+                "time": chosen_times[c.posture],
+            }
             for c in report.plumes
         ],
     }

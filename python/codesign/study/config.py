@@ -262,6 +262,8 @@ class StudyConfig(Section, frozen=True, kw_only=True):
     """The whole file. Without [flight] parts alone are judged; without [robot] they sit in none."""
 
     name: Annotated[str, Meta(pattern=r"^[A-Za-z0-9][^/\\\x00-\x1f]*$")]  # of folders and files
+    extends: str = ""
+    without: list[str] = []
     title: str = ""
     description: str = ""
     robot: RobotConfig | None = None

@@ -16,7 +16,10 @@ from codesign.study.config import StudyConfig
 from codesign.study.flight_config import FlightConfig
 
 MOST_SAMPLES = 1_000_000  # of a flight
+MOST_PLANT_STEPS = 100_000_000
 UNIT_TOLERANCE = 1e-6  # of the length of an axis
+OPTIONAL_OF_GROUPS = ("reference_rad", "ranges_deg")
+PER_JOINT = ("rotor_inertia_kg_m2", "viscous_friction_n_m_per_rad_s", "coulomb_friction_n_m")  # one number, or a list
 PER_JET = ("max_thrust_n", "max_thrust_rate_n_s", "min_thrust_n", "reaction_n_m_per_n", "lag_s")
 
 
@@ -34,9 +37,29 @@ def flight_problems(config: StudyConfig) -> Iterator[Problem]:
             yield f"flight.references.{key}_range_deg", f"{limits[0]:g} is above {limits[1]:g}"
     if bool(flight.ground.frames) != bool(flight.ground.points_m):
         yield "flight.ground", "frames and points_m belong together: the points stand in each of the frames"
+    yield from _air_and_start_problems(config, flight)
     if flight.jet_model == "turbine" and flight.turbine is None:
         yield "flight.jet_model", "'turbine' needs [flight.turbine]"
     yield from _trajectory_problems(config)
+
+
+def _air_and_start_problems(config: StudyConfig, flight: FlightConfig) -> Iterator[Problem]:
+    """Drag areas, wind without any, and a start that both hovers and falls."""
+    if flight.drag is not None:
+        for name in ("areas_m2", "positions_m"):
+            given = getattr(flight.drag, name)
+            optional = name == "positions_m" and not given
+            if isinstance(given, list) and not optional and len(given) != len(flight.drag.frames):
+                yield f"flight.drag.{name}", f"needs {len(flight.drag.frames)} entries, one for each of frames"
+    elif windy := [name for name, flown in config.trajectories.items() if any(flown.disturbances.wind_m_s)]:
+        yield f"trajectories.{windy[0]}.disturbances.wind_m_s", "needs [flight.drag], the areas that air drags"
+    start = flight.initial_state
+    if start.trim is not None:
+        if start.free_fall_first_step:
+            yield "flight.initial_state.free_fall_first_step", "a robot that starts in a trimmed hover does not fall"
+        joints = [joint for group in flight.joint_groups for joint in group.joints]
+        for joint in start.trim.joints:
+            yield from unknown("flight.initial_state.trim.joints", "joint", joint, joints)
 
 
 def _flightless_problems(config: StudyConfig) -> Iterator[Problem]:
@@ -55,15 +78,37 @@ def _flightless_problems(config: StudyConfig) -> Iterator[Problem]:
 
 
 def _time_problems(flight: FlightConfig) -> Iterator[Problem]:
+    torque_step = flight.torque_step_s or flight.step_s
+    for key, whole, part in (
+        ("torque_step_s", flight.step_s, torque_step),
+        ("plant_step_s", torque_step, flight.plant_step_s or torque_step),
+        ("drives.momentum_delay_s", flight.drives.momentum_delay_s, flight.step_s),
+        ("drives.torque_delay_s", flight.drives.torque_delay_s, torque_step),
+    ):
+        if not _is_multiple(whole, part) or (whole < part and not key.startswith("drives")):
+            yield f"flight.{key}", f"{whole:g} s is not a whole number of steps of {part:g} s"
+    plant_step = flight.plant_step_s or torque_step
+    if flight.duration_s / plant_step > MOST_PLANT_STEPS:
+        yield "flight.plant_step_s", f"{plant_step:g} gives more than {MOST_PLANT_STEPS} steps of the simulation"
+    if twice := repeated(str(seed) for seed in flight.seeds):
+        yield "flight.seeds", f"seed {twice} is named twice"
     steps = flight.duration_s / flight.step_s
     if steps > MOST_SAMPLES:
         yield "flight.step_s", f"{flight.step_s:g} gives more than {MOST_SAMPLES} samples"
-    elif round(steps) < 1 or abs(steps - round(steps)) > 1e-6:
+    elif round(steps) < 1 or not _is_multiple(flight.duration_s, flight.step_s):
         yield "flight.duration_s", f"{flight.duration_s:g} is not a whole number of steps of {flight.step_s:g} s"
+
+
+def _is_multiple(whole: float, part: float) -> bool:
+    ratio = whole / part
+    return math.isfinite(ratio) and abs(ratio - round(ratio)) <= 1e-6
 
 
 def _joint_problems(flight: FlightConfig) -> Iterator[Problem]:
     groups = flight.joint_groups
+    for name in OPTIONAL_OF_GROUPS:
+        if len({bool(getattr(group, name)) for group in groups if group.joints}) > 1:
+            yield f"flight.joint_groups.{name}", "stands in some groups only: give it in all of them, or in none"
     if twice := repeated(group.name for group in groups):
         yield "flight.joint_groups", f"two groups have the name {twice!r}"
     if twice := repeated(joint for group in groups for joint in group.joints):
@@ -72,10 +117,12 @@ def _joint_problems(flight: FlightConfig) -> Iterator[Problem]:
         key = f"flight.joint_groups[{group.name}]"
         if not group.joints:
             yield f"{key}.joints", "empty: leave out a group without joints"
-        for name in ("initial_rad", "ranges_deg"):
-            given = len(getattr(group, name))
-            if given != len(group.joints):
-                yield f"{key}.{name}", f"needs {len(group.joints)} entries, one per joint, has {given}"
+        for name in ("initial_rad", *OPTIONAL_OF_GROUPS, *PER_JOINT):
+            value = getattr(group, name)
+            if not isinstance(value, list) or (not value and name in OPTIONAL_OF_GROUPS):
+                continue
+            if len(value) != len(group.joints):
+                yield f"{key}.{name}", f"needs {len(group.joints)} entries, one per joint, has {len(value)}"
         for joint, (low, high) in zip(group.joints, group.ranges_deg, strict=False):
             if low >= high:
                 yield f"{key}.ranges_deg", f"{joint}: {low:g} must be below {high:g}"
@@ -138,8 +185,12 @@ def robot_problems(config: StudyConfig, robot: RobotDescription) -> Iterator[Pro
             yield from unknown(key, "moving joint", joint, robot.moving_joint_names)
     for jet in flight.jets.frames:
         yield from unknown("flight.jets.frames", "link", jet, robot.link_names)
-    for frame in flight.ground.frames:
-        yield from unknown("flight.ground.frames", "link", frame, robot.link_names)
+    frames = {"flight.ground.frames": flight.ground.frames}
+    frames["flight.drag.frames"] = flight.drag.frames if flight.drag is not None else []
+    frames["flight.tank.frame"] = [flight.tank.frame] if flight.tank is not None else []
+    for key, links in frames.items():
+        for link in links:
+            yield from unknown(key, "link", link, robot.link_names)
     if config.interference is not None:
         yield from _interference_problems(config, config.interference, robot)
 

@@ -7,13 +7,25 @@ from typing import Literal
 from codesign.study.sections import Deviation, Name, NonNegative, Positive, Range, Section, Seed, Sign, Vector3
 
 
+class TrimConfig(Section, frozen=True, kw_only=True):
+    """Start in a hover: of all states in which the thrusts carry the weight, the one nearest to the initial state.
+
+    Nearest: least Σ (Δs)² + (tilt_weight · tilt)² + Σ (thrust_weight (T - mean))², [rad], [N].
+    """
+
+    joints: list[str]
+    tilt_weight: Positive = 3.0
+    thrust_weight: Positive = 0.003
+
+
 class InitialStateConfig(Section, frozen=True, kw_only=True):
     """State at the start of a flight."""
 
     base_position_m: Vector3
     base_rpy_deg: Vector3 = (0.0, 0.0, 0.0)
     thrust_n: NonNegative | list[NonNegative]
-    free_fall_first_step: bool = True
+    free_fall_first_step: bool = False
+    trim: TrimConfig | None = None
 
 
 class JointGroupConfig(Section, frozen=True, kw_only=True):
@@ -22,10 +34,14 @@ class JointGroupConfig(Section, frozen=True, kw_only=True):
     name: Name
     joints: list[str]
     initial_rad: list[float]
-    ranges_deg: list[Range]
+    reference_rad: list[float] = []
+    ranges_deg: list[Range] = []
     range_scale: Positive = 1.0
     posture_gain_hz: NonNegative
     velocity_weight: NonNegative = 0.0
+    rotor_inertia_kg_m2: NonNegative | list[NonNegative] = 0.0
+    viscous_friction_n_m_per_rad_s: NonNegative | list[NonNegative] = 0.0
+    coulomb_friction_n_m: NonNegative | list[NonNegative] = 0.0
 
 
 class JetsConfig(Section, frozen=True, kw_only=True):
@@ -79,6 +95,7 @@ class GainsConfig(Section, frozen=True, kw_only=True):
     attitude_derivative: NonNegative
     joint_integral: NonNegative
     joint_proportional: NonNegative
+    observer_hz: NonNegative = 0.0
 
 
 class WeightsConfig(Section, frozen=True, kw_only=True):
@@ -102,6 +119,33 @@ class LimitsConfig(Section, frozen=True, kw_only=True):
     thrust_rate_slope_per_n: Positive
     torque_n_m: Positive
     torque_rate_n_m_s: Positive
+
+
+class DrivesConfig(Section, frozen=True, kw_only=True):
+    """How late and how rough the drives are; all of it unknown to the controller."""
+
+    momentum_delay_s: NonNegative = 0.0
+    torque_delay_s: NonNegative = 0.0
+    torque_lag_s: NonNegative = 0.0
+    slip_speed_rad_s: Positive = 0.02
+
+
+class DragConfig(Section, frozen=True, kw_only=True):
+    """What air drags, a point each: force ½ ρ C_d A u² against the velocity u through the air."""
+
+    frames: list[str]
+    areas_m2: NonNegative | list[NonNegative]
+    positions_m: list[Vector3] = []
+    air_density_kg_m3: Positive = 1.225
+
+
+class TankConfig(Section, frozen=True, kw_only=True):
+    """Fuel on board, part of its link's inertia at the start; the controller does not see it go."""
+
+    frame: str
+    position_m: Vector3 = (0.0, 0.0, 0.0)
+    fuel_kg: Positive
+    consumption_kg_per_n_s: NonNegative
 
 
 class FailureConfig(Section, frozen=True, kw_only=True):
@@ -142,7 +186,11 @@ class FlightConfig(Section, frozen=True, kw_only=True):
 
     trajectory: str
     step_s: Positive
+    torque_step_s: Positive | None = None
+    plant_step_s: Positive | None = None
+    integrator: Literal["euler", "semi_implicit_euler", "runge_kutta_4"] = "euler"
     duration_s: Positive
+    seeds: list[Seed] = []
     jet_model: Literal["integrator", "lag", "turbine"] = "integrator"
     initial_state: InitialStateConfig
     joint_groups: list[JointGroupConfig] = []
@@ -152,6 +200,9 @@ class FlightConfig(Section, frozen=True, kw_only=True):
     gains: GainsConfig
     weights: WeightsConfig
     limits: LimitsConfig
+    drives: DrivesConfig = DrivesConfig()
+    drag: DragConfig | None = None
+    tank: TankConfig | None = None
     failure: FailureConfig
     ground: GroundConfig = GroundConfig()
     turbine: TurbineConfig | None = None
@@ -174,6 +225,7 @@ class DisturbancesConfig(Section, frozen=True, kw_only=True):
     """What the flight has and the controller does not know; deviations are drawn from the seed."""
 
     wind_n: Vector3 = (0.0, 0.0, 0.0)
+    wind_m_s: Vector3 = (0.0, 0.0, 0.0)
     gust_deviation_n: tuple[NonNegative, NonNegative, NonNegative] = (0.0, 0.0, 0.0)
     gust_time_s: Positive = 1.0
     mass_scale: Positive = 1.0

@@ -24,6 +24,7 @@ from codesign.study.conversion import convert, type_problems
 from codesign.study.fingerprint import study_identity
 from codesign.study.flight_checks import flight_problems, robot_problems
 from codesign.study.imports import PACKAGE
+from codesign.study.inheritance import extended
 from codesign.study.parts import built_problems
 from codesign.study.study import StudyData
 from codesign.study.user_modules import import_beside, module_file
@@ -100,6 +101,22 @@ def _robot(config: StudyConfig, path: Path) -> RobotDescription:
 
 
 def _parse(path: Path) -> RawStudy:
+    """The document of a study, with what it takes over from the study it extends. Raises: StudyError."""
+    return extended(_document(path), path, _extended_file, _document)
+
+
+def _extended_file(name: str, path: Path) -> Path:
+    """The file of the study that the one at path extends."""
+    if name in shipped_studies():
+        return STUDIES / name / "study.toml"
+    file = (path.parent / name).resolve()
+    file = file / "study.toml" if file.is_dir() else file
+    if not file.is_file():
+        raise StudyError(f"{path}: extends: {name!r}: no such study; shipped studies: {', '.join(shipped_studies())}")
+    return file
+
+
+def _document(path: Path) -> RawStudy:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
@@ -115,7 +132,7 @@ def _content(path: Path, raw: RawStudy) -> str:
     urdf = robot.get("urdf") if isinstance(robot, dict) else None
     files = [path, *sorted(folder.glob("*.py")), *sorted(folder.glob("*/*.py"))]
     files += [folder / urdf] if isinstance(urdf, str) else []
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(repr(raw).encode())  # also what another file gave
     for file in files:
         digest.update(str(file).encode() + b"\0" + (file.read_bytes() if file.is_file() else b""))
     return digest.hexdigest()

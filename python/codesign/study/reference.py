@@ -15,6 +15,7 @@ from codesign.study.meanings import MEANINGS
 
 SCHEMA_FILE = "study.schema.json"  # beside a new study; its first line names it
 UNITS = {
+    "_n_m_per_rad_s": "N·m·s/rad", "_kg_per_n_s": "kg/(N·s)", "_kg_m2": "kg·m²", "_m2": "m²", "_kg": "kg",
     "_n_m_per_n": "N·m/N", "_per_rad": "1/rad", "_per_n": "1/N", "_kg_m3": "kg/m³", "_gpa": "GPa", "_mpa": "MPa",
     "_m_s2": "m/s²", "_n_m_s": "N·m/s", "_n_m": "N·m", "_n_s": "N/s", "_deg_s": "°/s", "_rad_s": "rad/s", "_m_s": "m/s",
     "_mm": "mm", "_deg": "°", "_rad": "rad", "_hz": "Hz", "_mib": "MiB", "_percent": "%", "_n": "N", "_s": "s",

@@ -70,9 +70,30 @@ inline std::string urdf(const std::string& last_type = "revolute",
   return text + "</robot>";
 }
 
+// Gains, weights and limits of a humanoid with jets of 250 N.
+inline void set_controller(FlightSettings& s) {
+  s.command_speeds = {0.9375, 0.3125, 0.9375, 0.33, 0.76, 0.76};
+  s.reference = {-0.0873, 0.0873, -0.5236, 0.0, 1.5, 0.005, 1.0, 0.05};
+  s.gains.momentum_proportional = 1.5;
+  s.gains.momentum_derivative = 2.5 * std::sqrt(1.5);
+  s.gains.momentum_integral = 10.0;
+  s.gains.attitude_proportional = s.gains.torque_integral = 50.0;
+  s.gains.attitude_derivative = s.gains.torque_proportional = 2.0 * std::sqrt(50.0);
+  s.weights = {10.0, 150.0, 2.5, 10.0, 0.01, 0.1, 1e-4, 1.1e-3};
+  s.limits.joint_speed = 0.785;
+  s.limits.joint_slope = 10.0;
+  s.limits.thrust_slope = 2.0;
+  s.limits.torque = 50.0;
+  s.limits.torque_rate = 300.0;
+  s.failure = {2.0, 1.5707963267948966, 50.0};
+}
+
 inline FlightSettings settings() {
   FlightSettings s;
+  s.step = 0.008;
   s.duration = 4.0;
+  s.initial_free_fall = true;
+  set_controller(s);
   for (const std::string side : {"l", "r"}) {
     for (const std::string name : {"pitch", "roll", "elbow"}) s.joints.push_back(side + "_" + name);
   }

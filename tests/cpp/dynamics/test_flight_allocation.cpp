@@ -50,6 +50,14 @@ TEST_P(FlightAllocationTest, LoopDoesNotAllocate) {
   settings.disturbances.mass_scale = 1.02;
   settings.substeps = 2;
   EXPECT_EQ(allocations(settings, 4.0), allocations(settings, 0.4));
+  settings.torque_updates = 4;
+  settings.gains.observer = 5.0;
+  settings.rotor_inertia = settings.friction.viscous = Eigen::VectorXd::Constant(6, 0.05);
+  settings.friction.coulomb = Eigen::VectorXd::Constant(6, 0.1);
+  settings.delays = {0.008, 0.002, 0.001};
+  settings.drag = {{"trunk", {}, 0.4}};
+  settings.tank = Tank{"trunk", Eigen::Vector3d(0.0, 0.0, 0.1), 2.0, 1e-4};
+  EXPECT_EQ(allocations(settings, 4.0), allocations(settings, 0.4));
 }
 
 // An indefinite mass matrix is factored with pivoting, a torque at its limit brings in the box QP.

@@ -31,7 +31,7 @@ class MomentumControllerTest : public ::testing::Test {
     RobotState start = state_;
     start.joints = vector(6, 0.3);
     update_terms(model_, start, terms_);
-    origin_ = controller_origin(start, terms_);
+    origin_ = controller_origin(settings_, start, terms_);
     update_terms(model_, state_, terms_);
     reference_ = {vector(3, 1.0),
                   vector(3, 1.0),
@@ -41,7 +41,8 @@ class MomentumControllerTest : public ::testing::Test {
                   vector(3, 0.5),
                   vector(3, 0.5),
                   vector(3, 0.5)};
-    build_momentum_task(model_, settings_, origin_, state_, terms_, thrusts_, reference_, task_);
+    build_momentum_task(model_, settings_, origin_, state_, terms_, thrusts_, reference_,
+                        Vector6d::Zero(), task_);
     build_momentum_qp(settings_, origin_, task_, state_, thrusts_, qp_);
   }
 

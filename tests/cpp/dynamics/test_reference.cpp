@@ -6,6 +6,7 @@
 
 #include "dynamics/reference.hpp"
 #include "dynamics/spatial.hpp"
+#include "flying_robot.hpp"
 
 namespace codesign::dynamics {
 namespace {
@@ -34,7 +35,7 @@ TEST(Command, ActsStrictlyInsideItsWindow) {
 }
 
 TEST(Reference, HoversWithoutCommands) {
-  const FlightSettings settings;
+  const FlightSettings settings = testing::settings();
   ReferenceGenerator references = generator(settings);
   for (int k = 0; k < 200; ++k) {
     const Reference& r = references.update({});
@@ -45,7 +46,7 @@ TEST(Reference, HoversWithoutCommands) {
 }
 
 TEST(Reference, ForwardFollowsTheBaseAndSettlesWhereTheSpeedsSay) {
-  const FlightSettings settings;
+  const FlightSettings settings = testing::settings();
   ReferenceGenerator references = generator(settings);
   Command forward;
   forward.front = 1.0;
@@ -58,7 +59,7 @@ TEST(Reference, ForwardFollowsTheBaseAndSettlesWhereTheSpeedsSay) {
 }
 
 TEST(Reference, RollAndPitchStayWithinTheirLimits) {
-  const FlightSettings settings;
+  const FlightSettings settings = testing::settings();
   ReferenceGenerator references = generator(settings);
   Command command;
   command.pitch = 1.0, command.roll = -1.0;
@@ -70,7 +71,7 @@ TEST(Reference, RollAndPitchStayWithinTheirLimits) {
 }
 
 TEST(Reference, RotationStaysARotationAndItsRateIsTheAngularVelocity) {
-  FlightSettings settings;
+  FlightSettings settings = testing::settings();
   settings.step = 0.001;
   ReferenceGenerator references = generator(settings);
   Command command;

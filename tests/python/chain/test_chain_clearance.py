@@ -25,8 +25,8 @@ def flown():
 
 def judged(config, log, clearances):
     """The verdict on a flight without parts."""
-    flight = flight_document("envelope", log, config.flight, 0.0) | ({"interference": clearances} if clearances else {})
-    return judge(config, {"parts": {}, "flight": flight, "objective_families": objective_families(log)}, {})
+    flight = flight_document("envelope", [log], config.flight, 0.0) | ({"interference": clearances} if clearances else {})
+    return judge(config, {"parts": {}, "flight": flight, "objective_families": objective_families([log])}, {})
 
 
 def test_a_flown_design_reports_its_nearest_pairs_and_plumes(flown):

@@ -82,13 +82,17 @@ def test_settings_name_what_is_wrong(shared_data: Path) -> None:
     settings.initial_joints = np.zeros(22)
     with pytest.raises(ValueError, match=r"initial_joints: has 22 values, must have one per joint \(23\)"):
         settings.validate()
-    with pytest.raises(ValueError, match="actuators: is empty"):
+    with pytest.raises(ValueError, match=r"step: is 0\.000000, must be positive"):
         dyn.simulate_flight(load(shared_data, "optim1"), dyn.FlightSettings())
 
 
-def test_default_settings_name_no_robot() -> None:
+def test_default_settings_are_of_no_robot() -> None:
     settings = dyn.FlightSettings()
     assert settings.joints == [] and settings.actuators == [] and settings.groups == [] and settings.trajectory == []
+    given = (settings.gains, settings.weights, settings.limits, settings.command_speeds, settings.failure)
+    for part in given:
+        numbers = [getattr(part, name) for name, kind in vars(type(part)).items() if isinstance(kind, property)]
+        assert not any(np.any(number) for number in numbers), part
 
 
 def test_settings_copy_pickle_and_print() -> None:

@@ -41,7 +41,7 @@ def test_units_are_those_that_the_keys_say(key, expected):
     assert unit(key) == expected
 
 
-@pytest.mark.parametrize("study", ["ironcub", "gimbal_quad", "hexarotor"])
+@pytest.mark.parametrize("study", ["ironcub_paper", "gimbal_quad", "hexarotor"])
 def test_shipped_studies_match_the_schema_and_a_misspelt_key_does_not(study):
     schema = json.loads(json.dumps(study_schema()))
     jsonschema.Draft202012Validator.check_schema(schema)

@@ -1,0 +1,32 @@
+#include "dynamics/drag.hpp"
+
+#include <Eigen/Geometry>
+
+namespace codesign::dynamics {
+
+using Eigen::Vector3d;
+
+Drag::Drag(const Model& model, const FlightSettings& settings)
+    : wind_(settings.disturbances.wind_velocity) {
+  for (const DragArea& area : settings.drag) {
+    const int index = frame_index(model, area.frame);
+    const Frame& frame = model.frames[static_cast<std::size_t>(index)];
+    areas_.push_back({frame.body, frame.body_T_frame.p + frame.body_T_frame.R * area.position,
+                      0.5 * settings.air_density * area.area});
+  }
+}
+
+void Drag::add_forces(const Model& model, const RobotTerms& terms,
+                      Eigen::Ref<Eigen::VectorXd> generalized) const {
+  for (const Area& area : areas_) {
+    const auto index = static_cast<std::size_t>(area.body);
+    const BodyPose& pose = terms.kin.bodies[index];
+    const BodyVelocity& velocity = terms.velocity.bodies[index];
+    const Vector3d arm = pose.R * area.position;
+    const Vector3d against_air = velocity.linear + velocity.angular.cross(arm) - wind_;
+    const Vector3d force = -area.factor * against_air.norm() * against_air;
+    add_point_force(model, terms.kin, area.body, pose.p + arm, force, generalized);
+  }
+}
+
+}  // namespace codesign::dynamics

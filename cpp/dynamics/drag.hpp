@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "dynamics/flight_settings.hpp"
+#include "dynamics/robot_terms.hpp"
+
+namespace codesign::dynamics {
+
+// Aerodynamic drag of the robot's parts in steady wind, quadratic in the velocity against the air.
+class Drag {
+ public:
+  Drag(const Model& model, const FlightSettings& settings);
+
+  // generalized (6+n,) += Σ Jᵀ force at the state of the terms (kinematics and velocities).
+  void add_forces(const Model& model, const RobotTerms& terms,
+                  Eigen::Ref<Eigen::VectorXd> generalized) const;
+
+ private:
+  struct Area {
+    int body;
+    Eigen::Vector3d position;  // body axes [m]
+    double factor;             // ½ ρ C_d A [kg/m]
+  };
+  std::vector<Area> areas_;
+  Eigen::Vector3d wind_;
+};
+
+}  // namespace codesign::dynamics
