@@ -20,7 +20,7 @@ def flown():
     robot = pipeline.build_robot(study, design)
     model = dynamics.load_urdf(robot.to_text(), joints=joint_names(config.flight))
     log = dynamics.simulate_flight(model, flight_settings(config.flight, config.trajectories["envelope"]))
-    return config, log, pipeline._clearances(config, pipeline.build_parts(study, design, config), robot, log)
+    return config, log, pipeline._clearances(config, pipeline.build_parts(study, design, config), robot, [log])
 
 
 def judged(config, log, clearances):
@@ -61,5 +61,5 @@ def test_a_clearance_below_the_studys_limit_is_a_violation_with_a_reason(flown):
 def test_a_study_without_the_section_measures_nothing(flown):
     config, log, _ = flown
     silent = msgspec.structs.replace(config, interference=None)
-    assert pipeline._clearances(silent, {}, None, log) == {}
+    assert pipeline._clearances(silent, {}, None, [log]) == {}
     assert "body_clearance" not in judged(silent, log, {}).constraints
