@@ -25,7 +25,9 @@ def flown():
 
 def judged(config, log, clearances):
     """The verdict on a flight without parts."""
-    flight = flight_document("envelope", [log], config.flight, 0.0) | ({"interference": clearances} if clearances else {})
+    flight = flight_document("envelope", [log], config.flight, 0.0) | (
+        {"interference": clearances} if clearances else {}
+    )
     return judge(config, {"parts": {}, "flight": flight, "objective_families": objective_families([log])}, {})
 
 

@@ -225,7 +225,9 @@ def test_a_flown_part_is_reported_with_the_time_of_its_nearest_approach(swing):
     pieces = convex_pieces(surface.points, outward(surface.points, surface.triangles), 3)
     history = np.deg2rad(np.r_[np.linspace(0, 30, 100), np.linspace(30, 0, 100)])[:, None]
     settings = InterferenceSettings(bodies=("bar",), report_below_mm=2000, postures=5)
-    report = flown_interference(swing, settings, {"bar": ([PartPlacement("bar")], pieces)}, ["turn"], history, 0.01 * np.arange(len(history)))
+    report = flown_interference(
+        swing, settings, {"bar": ([PartPlacement("bar")], pieces)}, ["turn"], history, 0.01 * np.arange(len(history))
+    )
     nearest = report["bodies"][0]
     assert nearest["links"] == ["base", "bar"]
     assert nearest["time"] == pytest.approx(0.99)
