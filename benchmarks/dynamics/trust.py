@@ -4,7 +4,7 @@
   python benchmarks/dynamics/trust.py seeds --seeds 20 --design 15 42 80 108 --design 4 40 98 118
   python benchmarks/dynamics/trust.py time --repeats 5       # CPU of a flight over that of the study as published
 
-Designs of `steps`: published ones and Sobol points; of each the flights under the study's seeds, calm and at half steps.
+Designs of `steps`: published ones and Sobol points; of each the flights under its seeds, calm and at half steps.
 The share is that of the squared momentum errors before 2 s.
 """
 
