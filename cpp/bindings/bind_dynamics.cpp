@@ -302,20 +302,20 @@ void bind_model(py::module_& m) {
 Raises: UrdfError naming the link and its principal moments.)");
   m.def(
       "check_urdf",
-      [](const py::bytes& content, bool is_utf8) {
-        using namespace dynamics;
-        return reduce_urdf(std::string_view(content),
-                           is_utf8 ? XmlEncoding::kUtf8 : XmlEncoding::kDeclared,
-                           UrdfScope::kShapes)
-            .root;
+      [](const py::bytes& content, bool is_utf8, bool as_published) {
+        using dynamics::XmlEncoding;
+        return dynamics::check_urdf(std::string_view(content),
+                                    is_utf8 ? XmlEncoding::kUtf8 : XmlEncoding::kDeclared,
+                                    as_published);
       },
-      py::arg("content"), py::arg("is_utf8") = false,
+      py::arg("content"), py::arg("is_utf8") = false, py::arg("as_published") = false,
       R"(Name of the root link of a URDF whose links, joints, inertias and shapes can be used.
 
 Args:
     content: the text as bytes.
     is_utf8: read it as UTF-8, whatever byte order mark and XML declaration say.
-Raises: UrdfError naming line and element.)");
+    as_published: accept inertia tensors that no body can have; judged are the links that move as one.
+Raises: UrdfError naming line and element of all faults.)");
   m.def("load_urdf", &load_urdf, py::arg("text_or_path"), py::arg("joints") = py::none(),
         py::arg("as_published") = false, py::arg("fixed_base") = false,
         R"(The robot in a URDF, given as text or as the path of a file.
@@ -323,7 +323,8 @@ Raises: UrdfError naming line and element.)");
 Args:
     text_or_path: the text (starts with '<') or a path.
     joints: names of the joints that move, in the wanted order; all others are locked at position
-        0 and their links lumped. None: every joint that is not fixed, in the order of the URDF.
+        0 and their links lumped. None: every joint that is not fixed and mimics no other one, in
+        the order of the URDF. Joints that mimic one of them move along.
     as_published: accept inertia tensors that no body can have; nothing else is waived.
     fixed_base: hold the root link; nu and all matrices then lose the six base coordinates.
 Raises: UrdfError naming the element; UnknownNameError for a joint that is not there.)");

@@ -22,9 +22,10 @@ void center_of_mass_jacobian(const Model& model, const KinematicsData& kin,
     J.leftCols<3>().setIdentity();
     J.middleCols<3>(3) = -skew(all.com);
   }
+  J.rightCols(model.joint_count()).setZero();
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     const Body& body = model.bodies[i];
-    J.col(model.column(body)) =
+    J.col(model.column(body)) +=
         scale * joint_momentum(body, kin.bodies[i], inertia.subtrees[i]).linear;
   }
 }
@@ -44,12 +45,13 @@ void centroidal_momentum_matrix(const Model& model, const KinematicsData& kin,
     C.block<3, 3>(0, 3) = skew(-all.mass * all.com);
     C.block<3, 3>(3, 3) = all.inertia;
   }
+  C.rightCols(model.joint_count()).setZero();
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     const Body& body = model.bodies[i];
     const JointMomentum h = joint_momentum(body, kin.bodies[i], inertia.subtrees[i]);
     const int column = model.column(body);
-    C.col(column).head<3>() = h.linear;
-    C.col(column).tail<3>() = h.angular + (inertia.subtrees[i].com - all.com).cross(h.linear);
+    C.col(column).head<3>() += h.linear;
+    C.col(column).tail<3>() += h.angular + (inertia.subtrees[i].com - all.com).cross(h.linear);
   }
 }
 

@@ -9,7 +9,12 @@ namespace codesign::dynamics {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-ArticulatedData::ArticulatedData(const Model& model) : bodies(model.bodies.size()) {}
+ArticulatedData::ArticulatedData(const Model& model)
+    : bodies(model.bodies.size()),
+      forces(model),
+      mass(model.mimics ? model.dofs() : 0, model.mimics ? model.dofs() : 0),
+      jacobian(6, model.mimics ? model.dofs() : 0),
+      factor(mass.rows()) {}
 
 namespace {
 
@@ -71,6 +76,24 @@ void accelerate_base(const Model& model, ArticulatedData::Body& base) {
   base.angular_acceleration = acceleration.tail<3>();
 }
 
+// nu_dot = M⁻¹ ((0; tau) + Σ Jᵀ wrench − b).
+void accelerate_by_mass_matrix(const Model& model, const KinematicsData& kin,
+                               const InertiaData& inertia, const VelocityData& velocity,
+                               const Eigen::Ref<const Eigen::VectorXd>& tau,
+                               std::span<const FrameWrench> wrenches, ArticulatedData& scratch,
+                               Eigen::Ref<Eigen::VectorXd> nu_dot) {
+  mass_matrix(model, kin, inertia, scratch.mass);
+  bias_forces(model, kin, inertia, velocity, scratch.forces, nu_dot);
+  nu_dot = -nu_dot;
+  nu_dot.tail(model.joint_count()) += tau;
+  for (const FrameWrench& external : wrenches) {
+    frame_jacobian(model, kin, external.frame, scratch.jacobian);
+    nu_dot.noalias() += scratch.jacobian.transpose() * external.wrench;
+  }
+  scratch.factor.compute(scratch.mass);
+  nu_dot = scratch.factor.solve(nu_dot).eval();
+}
+
 }  // namespace
 
 void forward_dynamics(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
@@ -78,6 +101,10 @@ void forward_dynamics(const Model& model, const KinematicsData& kin, const Inert
                       std::span<const FrameWrench> wrenches, ArticulatedData& scratch,
                       Eigen::Ref<Eigen::VectorXd> nu_dot) {
   assert(tau.size() == model.joint_count() && nu_dot.size() == model.dofs());
+  if (model.mimics) {
+    accelerate_by_mass_matrix(model, kin, inertia, velocity, tau, wrenches, scratch, nu_dot);
+    return;
+  }
   start_bodies(model, kin, inertia, velocity, scratch);
   for (const FrameWrench& external : wrenches) {
     const Frame& frame = model.frames[static_cast<std::size_t>(external.frame)];

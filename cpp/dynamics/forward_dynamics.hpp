@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <span>
 #include <vector>
 
@@ -27,11 +28,17 @@ struct ArticulatedData {
     Eigen::Vector3d linear_acceleration, angular_acceleration;
   };
   std::vector<Body> bodies;
+  // Of models with bodies that share a joint, which are no tree of coordinates.
+  ForceData forces;
+  Eigen::MatrixXd mass;
+  Matrix6Xd jacobian;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factor;
 };
 
 // ν̇ (dofs,) of M ν̇ + b = (0; tau) + Σ Jᵀ wrench. tau: (n,) joint forces [N m] or [N].
 // Articulated bodies (Featherstone, ch. 7) without square roots, so that the indefinite mass
-// matrices of the published robots are accepted. At an exactly singular mass matrix the result is
+// matrices of the published robots are accepted. Where bodies share a joint, the mass matrix is
+// factored instead. At an exactly singular mass matrix the result is
 // not finite.
 void forward_dynamics(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
                       const VelocityData& velocity, const Eigen::Ref<const Eigen::VectorXd>& tau,

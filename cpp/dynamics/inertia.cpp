@@ -33,7 +33,7 @@ void compute_inertias(const Model& model, const KinematicsData& kin, InertiaData
 }
 
 JointMomentum joint_momentum(const Body& body, const BodyPose& pose, const RigidInertia& subtree) {
-  const Vector3d axis = pose.axis();
+  const Vector3d axis = body.ratio * pose.axis();
   if (body.type == JointType::kPrismatic) return {subtree.mass * axis, Vector3d::Zero()};
   return {subtree.mass * axis.cross(subtree.com - pose.p), subtree.inertia * axis};
 }

@@ -22,7 +22,7 @@ void forward_kinematics(const Model& model, const Pose& world_T_base,
     const Body& body = model.bodies[i];
     const BodyPose& parent = kin.bodies[static_cast<std::size_t>(body.parent)];
     BodyPose& pose = kin.bodies[i];
-    const double position = s[body.joint];
+    const double position = body.ratio * s[body.joint] + body.offset;
     const Matrix3d R = parent.R * body.parent_T_body.R;
     pose.offset.noalias() = parent.R * body.parent_T_body.p;
     pose.R.col(2) = R.col(2);
@@ -57,7 +57,7 @@ void forward_velocities(const Model& model, const KinematicsData& kin,
     const BodyVelocity& parent = velocity.bodies[static_cast<std::size_t>(body.parent)];
     const BodyPose& pose = kin.bodies[i];
     BodyVelocity& v = velocity.bodies[i];
-    const Vector3d rate = nu[model.column(body)] * pose.axis();
+    const Vector3d rate = (body.ratio * nu[model.column(body)]) * pose.axis();
     const Vector3d swing = parent.angular.cross(pose.offset);
     v.linear = parent.linear + swing;
     v.angular = parent.angular;
@@ -100,11 +100,12 @@ void frame_jacobian(const Model& model, const KinematicsData& kin, int frame,
     const Body& body = model.bodies[static_cast<std::size_t>(i)];
     const BodyPose& pose = kin.bodies[static_cast<std::size_t>(i)];
     const int column = model.column(body);
+    const Vector3d axis = body.ratio * pose.axis();
     if (body.type == JointType::kRevolute) {
-      J.col(column).head<3>() = pose.axis().cross(origin - pose.p);
-      J.col(column).tail<3>() = pose.axis();
+      J.col(column).head<3>() += axis.cross(origin - pose.p);
+      J.col(column).tail<3>() += axis;
     } else {
-      J.col(column).head<3>() = pose.axis();
+      J.col(column).head<3>() += axis;
     }
     i = body.parent;
   }

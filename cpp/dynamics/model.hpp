@@ -43,6 +43,9 @@ struct Body {
   int parent = kNone;  // index of a body that comes earlier
   int joint = kNone;   // index into Model::joints, kNone for the base
   JointType type = JointType::kRevolute;
+  // Position of the body on its joint: ratio times the joint's, plus offset [rad] or [m]. Of bodies
+  // that mimic a joint they are those of the URDF; several bodies then share one joint.
+  double ratio = 1.0, offset = 0.0;
   Pose parent_T_body;    // at joint position 0
   RigidInertia inertia;  // body axes, all lumped links included
 };
@@ -61,6 +64,7 @@ struct Model {
   std::vector<Body> bodies;   // parents before children
   std::vector<Frame> frames;  // in the order of the URDF text
   double total_mass = 0.0;    // [kg]
+  bool mimics = false;        // some bodies share a joint
 
   int joint_count() const { return static_cast<int>(joints.size()); }
   int body_count() const { return static_cast<int>(bodies.size()); }

@@ -31,16 +31,17 @@ void mass_matrix(const Model& model, const KinematicsData& kin, const InertiaDat
       const BodyPose& pose = kin.bodies[static_cast<std::size_t>(i)];
       const int row = model.column(ancestor);
       const double entry =
-          ancestor.type == JointType::kPrismatic
-              ? pose.axis().dot(h.linear)
-              : pose.axis().dot(h.angular + (subtree.com - pose.p).cross(h.linear));
-      M(row, column) = entry;
-      M(column, row) = entry;
+          ancestor.ratio *
+          (ancestor.type == JointType::kPrismatic
+               ? pose.axis().dot(h.linear)
+               : pose.axis().dot(h.angular + (subtree.com - pose.p).cross(h.linear)));
+      M(row, column) += entry;
+      if (i != j) M(column, row) += entry;
       i = ancestor.parent;
     }
     if (!model.fixed_base) {
-      M.block<3, 1>(0, column) = h.linear;
-      M.block<3, 1>(3, column) = h.angular + subtree.com.cross(h.linear);
+      M.block<3, 1>(0, column) += h.linear;
+      M.block<3, 1>(3, column) += h.angular + subtree.com.cross(h.linear);
       M.block<1, 6>(column, 0) = M.block<6, 1>(0, column).transpose();
     }
   }
@@ -62,12 +63,14 @@ namespace {
 // Sums the wrenches from the leaves to the base and projects them on the joints.
 void project_wrenches(const Model& model, const KinematicsData& kin, ForceData& forces,
                       Eigen::Ref<Eigen::VectorXd> generalized_forces) {
+  generalized_forces.setZero();
   for (std::size_t i = model.bodies.size() - 1; i > 0; --i) {
     const Body& body = model.bodies[i];
     const BodyPose& pose = kin.bodies[i];
     const ForceData::Wrench& wrench = forces.bodies[i];
     ForceData::Wrench& parent = forces.bodies[static_cast<std::size_t>(body.parent)];
-    generalized_forces[model.column(body)] =
+    generalized_forces[model.column(body)] +=
+        body.ratio *
         pose.axis().dot(body.type == JointType::kRevolute ? wrench.moment : wrench.force);
     parent.force += wrench.force;
     parent.moment += wrench.moment + pose.offset.cross(wrench.force);
@@ -103,7 +106,7 @@ void inverse_dynamics(const Model& model, const KinematicsData& kin, const Inert
       const ForceData::Acceleration& parent =
           scratch.accelerations[static_cast<std::size_t>(body.parent)];
       a = {parent.linear + parent.angular.cross(pose.offset), parent.angular};
-      const Vector3d joint = nu_dot[model.column(body)] * pose.axis();
+      const Vector3d joint = (body.ratio * nu_dot[model.column(body)]) * pose.axis();
       (body.type == JointType::kRevolute ? a.angular : a.linear) += joint;
     } else if (!model.fixed_base) {
       a = {nu_dot.head<3>(), nu_dot.segment<3>(3)};
@@ -121,6 +124,7 @@ void inverse_dynamics(const Model& model, const KinematicsData& kin, const Inert
 void gravity_forces(const Model& model, const KinematicsData& kin, const InertiaData& inertia,
                     Eigen::Ref<Eigen::VectorXd> g) {
   assert(g.size() == model.dofs());
+  g.setZero();
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     const Body& body = model.bodies[i];
     const RigidInertia& subtree = inertia.subtrees[i];
@@ -128,7 +132,7 @@ void gravity_forces(const Model& model, const KinematicsData& kin, const Inertia
     const double lift = body.type == JointType::kRevolute
                             ? axis.cross(subtree.com - kin.bodies[i].p).z()
                             : axis.z();
-    g[model.column(body)] = subtree.mass * kGravity * lift;
+    g[model.column(body)] += body.ratio * subtree.mass * kGravity * lift;
   }
   if (!model.fixed_base) {
     const RigidInertia& all = inertia.subtrees[0];

@@ -66,9 +66,9 @@ void add_jet_forces(const Model& model, const RobotTerms& terms,
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
       const BodyPose& pose = terms.kin.bodies[static_cast<std::size_t>(b)];
       generalized[model.column(body)] +=
-          body.type == JointType::kRevolute
-              ? pose.axis().dot((jet.origin - pose.p).cross(force) + moment)
-              : pose.axis().dot(force);
+          body.ratio * (body.type == JointType::kRevolute
+                            ? pose.axis().dot((jet.origin - pose.p).cross(force) + moment)
+                            : pose.axis().dot(force));
     }
   }
 }
@@ -127,10 +127,11 @@ void jet_map_rate(const Model& model, const RobotTerms& terms,
     for (const int b : jet.chain) {
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
       const BodyPose& pose = terms.kin.bodies[static_cast<std::size_t>(b)];
+      const Vector3d axis = body.ratio * pose.axis();
       if (body.type == JointType::kRevolute) {
-        add(model.column(body), pose.axis(), pose.axis().cross(jet.origin - pose.p));
+        add(model.column(body), axis, axis.cross(jet.origin - pose.p));
       } else {
-        add(model.column(body), Vector3d::Zero(), pose.axis());
+        add(model.column(body), Vector3d::Zero(), axis);
       }
     }
   }

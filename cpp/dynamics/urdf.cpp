@@ -3,16 +3,14 @@
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
 
+#include "dynamics/urdf_bodies.hpp"
 #include "dynamics/urdf_text.hpp"
 #include "errors.hpp"
 
@@ -22,30 +20,18 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Principal moments [kg m²] of rounded or measured tensors miss the triangle inequality by a
-// little. The brackets of the published robots, which fly well, miss it by up to 1.97 % of the
-// largest moment.
-constexpr double kTriangleTolerance = 0.02;
-// A zero moment of a point mass or a thin rod may come out negative by rounding.
-constexpr double kRounding = 1e-9;        // of the largest moment
-constexpr double kSmallestMass = 1e-9;    // [kg] of a moving body
-constexpr double kSmallestRadius = 1e-6;  // [m] of gyration of a moving body
-constexpr double kSmallestAxis = 1e-3;    // norm before it is normalized
+constexpr double kSmallestAxis = 1e-3;   // norm before it is normalized
+constexpr std::size_t kMostFaults = 20;  // in a message
 
-std::string in_quotes(std::string name) {
-  constexpr std::size_t kLongest = 120;
-  if (name.size() > kLongest) name = name.substr(0, kLongest) + "...";
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
-  return "\"" + name + "\"";
-}
-
-// Short, and the same in every locale.
-std::string number(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::general, 6);
-  return {buffer.data(), end.ptr};
+[[noreturn]] void refuse(const std::vector<std::string>& faults) {
+  std::string words;
+  for (std::size_t i = 0; i < std::min(faults.size(), kMostFaults); ++i) {
+    words += (i == 0 ? "" : "; ") + faults[i];
+  }
+  if (faults.size() > kMostFaults) {
+    words += "; and " + std::to_string(faults.size() - kMostFaults) + " more";
+  }
+  throw UrdfError(words);
 }
 
 // Collects the errors that urdfdom would print; the last ones name the element.
@@ -109,60 +95,6 @@ RigidInertia inertia_of(const urdf::Inertial& inertial) {
   return transform(pose_of(inertial.origin), {inertial.mass, Vector3d::Zero(), tensor});
 }
 
-Vector3d principal_moments(const RigidInertia& body) {
-  return Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia, Eigen::EigenvaluesOnly)
-      .eigenvalues();  // ascending
-}
-
-std::string list(const Vector3d& moments) {
-  return number(moments[0]) + ", " + number(moments[1]) + ", " + number(moments[2]) + " kg m2";
-}
-
-double smallest_moment(const RigidInertia& body) {
-  return kSmallestRadius * kSmallestRadius * body.mass;
-}
-
-// What one <inertial> must fulfill. Point masses and thin rods pass.
-void check_link_inertia(const RigidInertia& link, const std::string& name, bool as_published) {
-  if (link.mass < 0.0) {
-    throw UrdfError("link " + in_quotes(name) + ": negative mass " + number(link.mass) + " kg");
-  }
-  if (as_published) return;
-  const Vector3d moments = principal_moments(link);
-  if (link.mass == 0.0 && !moments.isZero(0.0)) {
-    throw UrdfError("link " + in_quotes(name) +
-                    ": non-physical inertia, principal moments without mass: " + list(moments));
-  }
-  const double slack = kRounding * moments[2] + smallest_moment(link);
-  if (moments[0] < -slack) {
-    throw UrdfError("link " + in_quotes(name) +
-                    ": non-physical inertia, a principal moment is negative: " + list(moments));
-  }
-  if (moments[2] > moments[0] + moments[1] + kTriangleTolerance * moments[2] + slack) {
-    throw UrdfError("link " + in_quotes(name) +
-                    ": non-physical inertia, a principal moment exceeds the sum of the others: " +
-                    list(moments) + "; as_published accepts it");
-  }
-}
-
-// What a moving body, lumped from its links, must fulfill for the equations of motion to be
-// regular.
-void check_moving_body(const Body& body, bool as_published) {
-  if (body.inertia.mass < kSmallestMass) {
-    throw UrdfError("link " + in_quotes(body.name) +
-                    " moves but has no mass (with the links fixed to it " +
-                    number(body.inertia.mass) + " kg)");
-  }
-  if (as_published) return;
-  const Vector3d moments = principal_moments(body.inertia);
-  if (moments[0] <= smallest_moment(body.inertia)) {
-    throw UrdfError("link " + in_quotes(body.name) +
-                    " moves: non-physical inertia, principal moments with the links fixed to it "
-                    "are not positive: " +
-                    list(moments));
-  }
-}
-
 Joint joint_of(const urdf::Joint& urdf) {
   Joint joint;
   joint.name = urdf.name;
@@ -189,6 +121,24 @@ Matrix3d rotation_to_axis(const Vector3d& axis) {
   return R;
 }
 
+// Position of a joint as a function of an independent one: ratio times its position, plus offset.
+struct Mimic {
+  std::string joint;  // empty: it does not depend on any, and stays at the offset
+  double ratio = 1.0, offset = 0.0;
+};
+
+// Motion of a joint's child at a position that never changes.
+Pose displacement(const urdf::Joint& joint, double position) {
+  const Vector3d axis = Vector3d(joint.axis.x, joint.axis.y, joint.axis.z).normalized();
+  if (joint.type == urdf::Joint::PRISMATIC) return {Matrix3d::Identity(), position * axis};
+  return {Eigen::AngleAxisd(position, axis).toRotationMatrix(), Vector3d::Zero()};
+}
+
+bool has_one_axis(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
+
 // Builds the tree of moving bodies from the tree of links.
 class Builder {
  public:
@@ -196,10 +146,31 @@ class Builder {
       : urdf_(urdf), text_(text), options_(options) {
     model_.name = urdf.getName();
     model_.fixed_base = options.fixed_base;
-    select_joints();
   }
 
   Model build() {
+    grow();
+    finish();
+    return std::move(model_);
+  }
+
+  // Refuses inertias that no body can have; joints of every type move.
+  void judge() {
+    every_joint_moves_ = true;
+    grow();
+    if (faults_.empty()) faults_ = inertia_faults(model_);
+    if (!faults_.empty()) refuse(faults_);
+  }
+
+ private:
+  struct Place {
+    const urdf::Link* link;
+    int body;
+    Pose body_T_link;
+  };
+
+  void grow() {
+    select_joints();
     Body base;
     base.name = urdf_.getRoot()->name;
     model_.bodies.push_back(base);
@@ -212,24 +183,19 @@ class Builder {
         open.push_back(child_of(place, *joint));
       }
     }
-    finish();
-    return std::move(model_);
   }
-
- private:
-  struct Place {
-    const urdf::Link* link;
-    int body;
-    Pose body_T_link;
-  };
 
   void select_joints() {
     std::vector<std::string> names;
     if (options_.joints) {
       names = *options_.joints;
     } else {
-      for (const UrdfText::Joint& joint : text_.joints) {
-        if (urdf_.getJoint(joint.name)->type != urdf::Joint::FIXED) names.push_back(joint.name);
+      for (const UrdfText::Joint& item : text_.joints) {
+        const urdf::JointConstSharedPtr joint = urdf_.getJoint(item.name);
+        const bool follows = has_one_axis(*joint) && joint->mimic;
+        const bool moves =
+            every_joint_moves_ ? has_one_axis(*joint) : joint->type != urdf::Joint::FIXED;
+        if (moves && !follows) names.push_back(item.name);
       }
     }
     for (const std::string& name : names) {
@@ -238,7 +204,7 @@ class Builder {
         throw UnknownNameError("robot " + in_quotes(model_.name) + " has no joint " +
                                in_quotes(name));
       }
-      check_movable(*joint);
+      if (!is_movable(*joint)) continue;
       if (!order_.emplace(name, model_.joint_count()).second) {
         throw UrdfError("joint " + in_quotes(name) + " is selected twice");
       }
@@ -246,26 +212,42 @@ class Builder {
     }
   }
 
-  static void check_movable(const urdf::Joint& joint) {
-    const bool single_axis = joint.type == urdf::Joint::REVOLUTE ||
-                             joint.type == urdf::Joint::CONTINUOUS ||
-                             joint.type == urdf::Joint::PRISMATIC;
-    if (!single_axis) {
+  bool is_movable(const urdf::Joint& joint) {
+    const std::string words = "joint " + in_quotes(joint.name);
+    if (!has_one_axis(joint)) {
       const char* type = joint.type == urdf::Joint::FLOATING ? "floating"
                          : joint.type == urdf::Joint::PLANAR ? "planar"
                                                              : "fixed";
-      throw UrdfError("joint " + in_quotes(joint.name) + " is " + type +
-                      ": only revolute, continuous and prismatic joints can move; a model with "
-                      "joints=[...] moves those it names and locks the others");
+      faults_.push_back(words + " is " + type +
+                        ": only revolute, continuous and prismatic joints can move; a model with "
+                        "joints=[...] moves those it names and locks the others");
+    } else if (joint.mimic) {
+      faults_.push_back(words + " mimics joint " + in_quotes(joint.mimic->joint_name) +
+                        ": name that one, and it moves along");
+    } else {
+      return true;
     }
-    if (joint.mimic) {
-      throw UrdfError("joint " + in_quotes(joint.name) + " mimics joint " +
-                      in_quotes(joint.mimic->joint_name) +
-                      ", which is not supported: leave it out of the joints to lock it at 0");
+    return false;
+  }
+
+  // What an unselected joint follows, through joints that mimic others themselves.
+  Mimic followed(const urdf::Joint& urdf) {
+    Mimic mimic{urdf.name};
+    const urdf::Joint* joint = &urdf;
+    for (std::size_t steps = 0; order_.find(joint->name) == order_.end(); ++steps) {
+      if (!has_one_axis(*joint) || !joint->mimic) return {{}, 0.0, mimic.offset};
+      const urdf::JointConstSharedPtr next = urdf_.getJoint(joint->mimic->joint_name);
+      const std::string words = "joint " + in_quotes(joint->name) + " mimics joint " +
+                                in_quotes(joint->mimic->joint_name);
+      if (!next || steps > text_.joints.size()) {
+        faults_.push_back(words + (next ? ", which mimics it in turn" : ", which does not exist"));
+        return {{}, 0.0, 0.0};
+      }
+      mimic = {next->name, mimic.ratio * joint->mimic->multiplier,
+               mimic.offset + mimic.ratio * joint->mimic->offset};
+      joint = next.get();
     }
-    if (Vector3d(joint.axis.x, joint.axis.y, joint.axis.z).norm() < kSmallestAxis) {
-      throw UrdfError("joint " + in_quotes(joint.name) + " has no axis: its norm is zero");
-    }
+    return mimic;
   }
 
   void add_link(const Place& place) {
@@ -273,7 +255,10 @@ class Builder {
     model_.frames.push_back({link.name, place.body, place.body_T_link});
     if (!link.inertial) return;
     const RigidInertia own = inertia_of(*link.inertial);
-    check_link_inertia(own, link.name, options_.as_published);
+    if (own.mass < 0.0) {
+      faults_.push_back("link " + in_quotes(link.name) + ": negative mass " +
+                        short_number(own.mass) + " kg");
+    }
     RigidInertia& body = model_.bodies[static_cast<std::size_t>(place.body)].inertia;
     body = body + transform(place.body_T_link, own);
   }
@@ -281,28 +266,44 @@ class Builder {
   Place child_of(const Place& parent, const urdf::Joint& urdf) {
     const urdf::Link* child = urdf_.getLink(urdf.child_link_name).get();
     const Pose body_T_joint = parent.body_T_link * pose_of(urdf.parent_to_joint_origin_transform);
-    const auto selected = order_.find(urdf.name);
-    if (selected == order_.end()) return {child, parent.body, body_T_joint};
+    if (every_joint_moves_ && !has_one_axis(urdf) && urdf.type != urdf::Joint::FIXED) {
+      Body body;
+      body.name = child->name;
+      body.parent = parent.body;
+      model_.bodies.push_back(body);
+      return {child, model_.body_count() - 1, {}};
+    }
+    const Mimic mimic = followed(urdf);
+    if (mimic.joint.empty() || mimic.ratio == 0.0) {
+      const bool displaced = mimic.offset != 0.0;
+      return {child, parent.body,
+              displaced ? body_T_joint * displacement(urdf, mimic.offset) : body_T_joint};
+    }
     const Vector3d axis(urdf.axis.x, urdf.axis.y, urdf.axis.z);
+    if (axis.norm() < kSmallestAxis) {
+      faults_.push_back("joint " + in_quotes(urdf.name) + " has no axis: its norm is zero");
+    }
     const Pose joint_T_body{rotation_to_axis(axis.normalized()), Vector3d::Zero()};
     Body body;
     body.name = child->name;
     body.parent = parent.body;
-    body.joint = selected->second;
-    body.type = model_.joints[static_cast<std::size_t>(body.joint)].type;
+    body.joint = order_.at(mimic.joint);
+    body.type = urdf.type == urdf::Joint::PRISMATIC ? JointType::kPrismatic : JointType::kRevolute;
+    body.ratio = mimic.ratio;
+    body.offset = mimic.offset;
+    model_.mimics = model_.mimics || mimic.joint != urdf.name;
     body.parent_T_body = body_T_joint * joint_T_body;
     model_.bodies.push_back(body);
     return {child, model_.body_count() - 1, inverse(joint_T_body)};
   }
 
   void finish() {
-    for (const Body& body : model_.bodies) {
-      model_.total_mass += body.inertia.mass;
-      const bool moves = !(model_.fixed_base && body.parent == kNone);
-      if (moves) check_moving_body(body, options_.as_published);
+    for (const Body& body : model_.bodies) model_.total_mass += body.inertia.mass;
+    if (faults_.empty() && !(model_.total_mass > 0.0)) {
+      faults_.push_back("robot " + in_quotes(model_.name) + " has no mass");
     }
-    if (!(model_.total_mass > 0.0))
-      throw UrdfError("robot " + in_quotes(model_.name) + " has no mass");
+    if (faults_.empty()) faults_ = body_faults(model_, options_.as_published);
+    if (!faults_.empty()) refuse(faults_);
     std::map<std::string, std::size_t> place;
     for (const std::string& link : text_.links) place.emplace(link, place.size());
     std::sort(model_.frames.begin(), model_.frames.end(),
@@ -312,6 +313,8 @@ class Builder {
   const urdf::ModelInterface& urdf_;
   const UrdfText& text_;
   const UrdfOptions& options_;
+  bool every_joint_moves_ = false;
+  std::vector<std::string> faults_;
   std::map<std::string, int> order_;  // joint name → index in Model::joints
   Model model_;
 };
@@ -336,20 +339,39 @@ std::string read_file(const std::string& path) {
                   " cannot be read as a file, and is no URDF text, which starts with '<'");
 }
 
+// A parsed robot that is taken apart at the end.
+struct Parsed {
+  explicit Parsed(const UrdfText& text) : urdf(parse(text.xml)) {}
+  ~Parsed() { release(urdf); }
+  Parsed(const Parsed&) = delete;
+  Parsed& operator=(const Parsed&) = delete;
+  urdf::ModelInterfaceSharedPtr urdf;
+};
+
 Model load_text(const std::string& text, XmlEncoding encoding, const UrdfOptions& options) {
   const UrdfText reduced = reduce_urdf(text, encoding);
-  const urdf::ModelInterfaceSharedPtr urdf = parse(reduced.xml);
-  struct Release {
-    const urdf::ModelInterfaceSharedPtr& urdf;
-    ~Release() { release(urdf); }
-  } const releaser{urdf};
-  return Builder(*urdf, reduced, options).build();
+  const Parsed parsed(reduced);
+  return Builder(*parsed.urdf, reduced, options).build();
 }
 
 }  // namespace
 
+std::string check_urdf(std::string_view text, XmlEncoding encoding, bool as_published) {
+  const UrdfText reduced = reduce_urdf(text, encoding, UrdfScope::kShapes);
+  if (!as_published) {
+    const Parsed parsed(reduced);
+    Builder(*parsed.urdf, reduced, {}).judge();
+  }
+  return reduced.root;
+}
+
 void check_inertia(const RigidInertia& body, const std::string& link) {
-  check_link_inertia(body, link, false);
+  const std::string fault = inertia_fault(body);
+  if (!fault.empty()) {
+    const bool published = body.mass >= 0.0;
+    throw UrdfError("link " + in_quotes(link) + ": " + fault +
+                    (published ? "; as_published accepts it" : ""));
+  }
 }
 
 Model load_urdf(const std::string& text_or_path, const UrdfOptions& options) {

@@ -2,9 +2,11 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dynamics/model.hpp"
+#include "dynamics/xml_reader.hpp"
 
 namespace codesign::dynamics {
 
@@ -24,6 +26,12 @@ struct UrdfOptions {
 // ignored.
 // Throws UrdfError naming the element for anything that cannot be simulated.
 Model load_urdf(const std::string& text_or_path, const UrdfOptions& options = {});
+
+// Judges a robot of which nothing is to fly yet: what load_urdf refuses in its text, the shapes and
+// colors of visuals and collisions, and, if not as_published, inertias that no body can have.
+// Joints of every type move; the mass matrix is not asked for. Returns the name of the root link.
+// Throws UrdfError naming all faults.
+std::string check_urdf(std::string_view text, XmlEncoding encoding, bool as_published = false);
 
 // The rule for what mass, and inertia about the center of mass, of a link a body can have: point
 // masses and thin rods pass, and tensors that miss the triangle inequality by rounding.

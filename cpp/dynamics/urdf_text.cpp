@@ -1,14 +1,16 @@
 #include "dynamics/urdf_text.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "dynamics/spatial.hpp"
+#include "dynamics/urdf_rules.hpp"
 #include "dynamics/urdf_tree.hpp"
 #include "errors.hpp"
 
@@ -17,72 +19,7 @@ namespace {
 
 constexpr int kMaxElements = 5000;  // links and joints
 constexpr std::size_t kMaxNameLength = 1000;
-constexpr double kLargestNumber = 1e9;  // of a length, an angle, a mass, an inertia, in SI units
-constexpr double kAnyNumber = std::numeric_limits<double>::max();
-
-using Names = std::initializer_list<std::string_view>;
-
-// The numbers of an attribute.
-struct NumberRule {
-  std::string_view element, attribute;
-  int count = 1;
-  double largest = kLargestNumber;
-  bool required = false;
-  bool positive = false;
-  bool one_will_do = false;
-};
-constexpr std::array kNumbers = {
-    NumberRule{"origin", "xyz", 3},
-    NumberRule{"origin", "rpy", 3},
-    NumberRule{"axis", "xyz", 3},
-    NumberRule{.element = "mass", .attribute = "value", .required = true},
-    NumberRule{.element = "inertia", .attribute = "ixx", .required = true},
-    NumberRule{.element = "inertia", .attribute = "ixy", .required = true},
-    NumberRule{.element = "inertia", .attribute = "ixz", .required = true},
-    NumberRule{.element = "inertia", .attribute = "iyy", .required = true},
-    NumberRule{.element = "inertia", .attribute = "iyz", .required = true},
-    NumberRule{.element = "inertia", .attribute = "izz", .required = true},
-    NumberRule{.element = "limit", .attribute = "lower", .largest = kAnyNumber},
-    NumberRule{.element = "limit", .attribute = "upper", .largest = kAnyNumber},
-    NumberRule{
-        .element = "limit", .attribute = "velocity", .largest = kAnyNumber, .required = true},
-    NumberRule{.element = "limit", .attribute = "effort", .largest = kAnyNumber, .required = true},
-    NumberRule{.element = "mimic", .attribute = "multiplier", .largest = kAnyNumber},
-    NumberRule{.element = "mimic", .attribute = "offset", .largest = kAnyNumber},
-    NumberRule{
-        .element = "box", .attribute = "size", .count = 3, .required = true, .positive = true},
-    NumberRule{.element = "cylinder", .attribute = "radius", .required = true, .positive = true},
-    NumberRule{.element = "cylinder", .attribute = "length", .required = true, .positive = true},
-    NumberRule{.element = "sphere", .attribute = "radius", .required = true, .positive = true},
-    NumberRule{.element = "mesh", .attribute = "scale", .count = 3, .one_will_do = true},
-    NumberRule{.element = "color", .attribute = "rgba", .count = 4}};
-
-constexpr std::array<std::string_view, 6> kJointTypes = {"fixed",     "revolute", "continuous",
-                                                         "prismatic", "floating", "planar"};
-
-bool one_of(std::string_view name, Names names) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool needs_limits(std::string_view type) { return one_of(type, {"revolute", "prismatic"}); }
-
-bool has_axis(std::string_view type) { return needs_limits(type) || type == "continuous"; }
-
-bool is_shape(std::string_view element) { return one_of(element, {"visual", "collision"}); }
-
-bool is_read(std::string_view parent, std::string_view element, UrdfScope scope) {
-  if (parent == "robot") return one_of(element, {"link", "joint"});
-  if (parent == "link") {
-    return element == "inertial" || (scope == UrdfScope::kShapes && is_shape(element));
-  }
-  if (parent == "inertial") return one_of(element, {"origin", "mass", "inertia"});
-  if (parent == "joint") {
-    return one_of(element, {"origin", "parent", "child", "axis", "limit", "mimic"});
-  }
-  if (is_shape(parent)) return one_of(element, {"origin", "geometry", "material"});
-  if (parent == "geometry") return one_of(element, {"box", "cylinder", "sphere", "mesh"});
-  return parent == "material" && element == "color";
-}
+constexpr double kSmallestQuaternion = 1e-6;
 
 void append_escaped(std::string_view value, std::string& out) {
   for (const char c : value) {
@@ -122,40 +59,15 @@ class Reducer : public XmlListener {
   explicit Reducer(UrdfScope scope) : scope_(scope) {}
 
   void start(std::string_view name, const std::vector<XmlAttribute>& attributes) override {
-    const std::string element(name);
-    if (++depth_ == 1) {
-      if (element != "robot") fail("the root element is <" + element + ">, not <robot>");
-      if (find(attributes, "name").empty()) fail("<robot> has no name");
-    } else if (depth_ != open_.size() + 1) {
-      return;  // below an element that nobody reads
-    } else if (!is_read(open_.back().name, element, scope_)) {
-      if (open_.back().name == "geometry") {
-        fail("<" + element + "> is no shape: box, cylinder, sphere or mesh");
-      }
-      return;
-    } else if (depth_ == 2) {
-      start_link_or_joint(element, attributes);
-    } else {
-      check_siblings(element);
-    }
-    const bool written = depth_ == 1 || (open_.back().written && !is_shape(element));
-    open_.push_back({element, written, {}});
-    read_element(element, attributes);
+    ++depth_;
+    start_element(std::string(name), attributes);
   }
 
   void end() override {
     if (depth_-- != open_.size()) return;
-    const Open& element = open_.back();
-    if (element.name == "inertial") require_children({"mass", "inertia"});
-    if (is_shape(element.name)) require_children({"geometry"});
-    if (element.name == "geometry" && element.children.empty()) {
-      fail("its <geometry> is empty: box, cylinder, sphere or mesh");
-    }
-    if (element.name == "joint" && needs_limits(type_) && !element.children.contains("limit")) {
-      fail("a " + type_ + " joint needs limits, <limit> is missing");
-    }
-    if (element.written) result_.xml += "</" + element.name + ">\n";
+    const Open element = std::move(open_.back());
     open_.pop_back();
+    end_element(element);
   }
 
   UrdfText result() && { return std::move(result_); }
@@ -167,6 +79,42 @@ class Reducer : public XmlListener {
     std::set<std::string> children;  // that were read
   };
   using Numbers = std::map<std::string_view, std::vector<double>>;  // by attribute
+
+  // An element that is refused is left out with all that is in it.
+  void start_element(const std::string& element, const std::vector<XmlAttribute>& attributes) {
+    if (depth_ == 1) {
+      if (element != "robot") fail("the root element is <" + element + ">, not <robot>");
+      if (find(attributes, "name").empty()) fail("<robot> has no name");
+    } else if (depth_ != open_.size() + 1) {
+      return;  // below an element that nobody reads
+    } else if (!is_read(open_.back().name, element, scope_)) {
+      if (open_.back().name == "geometry") {
+        no_shape_ = element;
+      }
+      return;
+    } else if (depth_ == 2) {
+      start_link_or_joint(element, attributes);
+    } else {
+      check_siblings(element);
+    }
+    const bool written = depth_ == 1 || (open_.back().written && !is_shape(element));
+    if (element == "geometry") no_shape_.clear();
+    open_.push_back({element, written, {}});
+    read_element(element, attributes);
+  }
+
+  void end_element(const Open& element) {
+    if (element.name == "inertial") require_children(element, {"mass", "inertia"});
+    if (is_shape(element.name)) require_children(element, {"geometry"});
+    if (element.name == "geometry" && element.children.empty()) {
+      fail((no_shape_.empty() ? "its <geometry> is empty: " : "<" + no_shape_ + "> is no shape: ") +
+           std::string(kShapeWords));
+    }
+    if (element.name == "joint" && needs_limits(type_) && !element.children.contains("limit")) {
+      fail("a " + type_ + " joint needs limits, <limit> is missing");
+    }
+    if (element.written) result_.xml += "</" + element.name + ">\n";
+  }
 
   static std::string_view find(const std::vector<XmlAttribute>& attributes, std::string_view name) {
     for (const XmlAttribute& attribute : attributes) {
@@ -206,10 +154,10 @@ class Reducer : public XmlListener {
     }
   }
 
-  void require_children(Names names) const {
+  void require_children(const Open& element, Names names) const {
     for (const std::string_view name : names) {
-      if (open_.back().children.contains(std::string(name))) continue;
-      fail("its <" + open_.back().name + "> has no <" + std::string(name) + ">");
+      if (element.children.contains(std::string(name))) continue;
+      fail("its <" + element.name + "> has no <" + std::string(name) + ">");
     }
   }
 
@@ -226,9 +174,6 @@ class Reducer : public XmlListener {
     if (element == "mesh" && find(attributes, "filename").empty()) {
       fail("its <mesh> has no filename");
     }
-    if (!find(attributes, "quat_xyzw").empty()) {
-      fail("origin quat_xyzw is not supported, use rpy");
-    }
     Numbers numbers;
     for (const NumberRule& rule : kNumbers) {
       if (rule.element != element) continue;
@@ -241,7 +186,21 @@ class Reducer : public XmlListener {
       }
     }
     check_joint(element, numbers);
+    if (element == "origin") read_quaternion(numbers);
     if (open_.back().written) write_start(element, attributes, numbers);
+  }
+
+  // A rotation given as a quaternion becomes fixed-axis angles, which any parser reads.
+  void read_quaternion(Numbers& numbers) const {
+    const auto found = numbers.find("quat_xyzw");
+    if (found == numbers.end()) return;
+    if (numbers.contains("rpy")) fail("its <origin> has both rpy and quat_xyzw");
+    const std::vector<double>& q = found->second;
+    const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
+    if (!(rotation.norm() > kSmallestQuaternion)) fail("origin quat_xyzw: of length zero");
+    const Eigen::Vector3d rpy = rotation_to_rpy(rotation.normalized().toRotationMatrix());
+    numbers["rpy"] = {rpy[0], rpy[1], rpy[2]};
+    numbers.erase(found);
   }
 
   // Axis and limits of a joint.
@@ -263,25 +222,36 @@ class Reducer : public XmlListener {
   void write_start(const std::string& element, const std::vector<XmlAttribute>& attributes,
                    const Numbers& numbers) {
     result_.xml += "<" + element;
+    const bool turned = std::none_of(attributes.begin(), attributes.end(),
+                                     [](const auto& a) { return a.name == "rpy"; });
+    if (element == "origin" && turned && numbers.contains("rpy")) {
+      write_numbers("rpy", numbers.at("rpy"));
+    }
     for (const auto& [name, value] : attributes) {
       const auto found = numbers.find(name);
       if (found == numbers.end() && !one_of(name, {"name", "type", "link", "joint"})) continue;
-      result_.xml.append(" ").append(name).append("=\"");
       if (found != numbers.end()) {
-        const char* separator = "";
-        for (const double number : found->second) {
-          result_.xml.append(separator).append(text_of(number));
-          separator = " ";
-        }
-      } else {
-        check_name(value);
-        append_escaped(value, result_.xml);
+        write_numbers(name, found->second);
+        continue;
       }
+      check_name(value);
+      result_.xml.append(" ").append(name).append("=\"");
+      append_escaped(value, result_.xml);
       result_.xml += '"';
     }
     result_.xml += ">\n";
     if (element == "parent") result_.joints.back().parent = find(attributes, "link");
     if (element == "child") result_.joints.back().child = find(attributes, "link");
+  }
+
+  void write_numbers(std::string_view name, const std::vector<double>& numbers) {
+    result_.xml.append(" ").append(name).append("=\"");
+    const char* separator = "";
+    for (const double number : numbers) {
+      result_.xml.append(separator).append(text_of(number));
+      separator = " ";
+    }
+    result_.xml += '"';
   }
 
   std::vector<double> read_numbers(const NumberRule& rule, std::string_view value) const {
@@ -315,7 +285,7 @@ class Reducer : public XmlListener {
     }
     if (error != std::errc{} || !std::isfinite(number)) refuse("not a finite number");
     if (std::abs(number) > rule.largest) refuse("above the limit of " + text_of(rule.largest));
-    if (rule.positive && !(number > 0.0)) refuse("not greater than zero");
+    if (rule.not_negative && number < 0.0) refuse("below zero");
     return number;
   }
 
@@ -331,6 +301,7 @@ class Reducer : public XmlListener {
   std::vector<Open> open_;  // the elements down to it that are read
   std::string where_;       // the current link or joint
   std::string type_;        // of the current joint
+  std::string no_shape_;    // last element of the current geometry that is none
   int elements_ = 0;
 };
 

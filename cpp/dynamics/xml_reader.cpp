@@ -14,6 +14,7 @@ namespace codesign::dynamics {
 namespace {
 
 constexpr std::size_t kMaxDepth = 100;
+constexpr int kMostFaults = 20;  // in a message
 constexpr std::size_t kExcerptLength = 30;
 
 class Parsing {
@@ -34,9 +35,12 @@ class Parsing {
     const auto status =
         XML_Parse(parser_.get(), text_.data(), static_cast<int>(text_.size()), XML_TRUE);
     if (failure_) std::rethrow_exception(failure_);
-    if (status == XML_STATUS_OK) return true;
+    if (status == XML_STATUS_OK) {
+      if (!faults_.empty()) throw UrdfError(faults_);
+      return true;
+    }
     if (XML_GetErrorCode(parser_.get()) == XML_ERROR_UNKNOWN_ENCODING) return false;
-    throw UrdfError(where() + reason());
+    throw UrdfError((faults_.empty() ? "" : faults_ + "; ") + where() + reason());
   }
 
  private:
@@ -60,6 +64,21 @@ class Parsing {
     XML_StopParser(self.parser_.get(), XML_FALSE);
   }
 
+  // What the listener refuses below the root element is kept, and reading goes on.
+  template <typename Action>
+  void collect(Action action) {
+    try {
+      action();
+    } catch (const UrdfError& e) {
+      if (faults_.empty() && open_.size() <= 1 && !below_root_) throw;
+      faults_ += (faults_.empty() ? "" : "; ") + where() + e.what();
+      if (++fault_count_ < kMostFaults) return;
+      failure_ = std::make_exception_ptr(UrdfError(faults_ + "; and perhaps more"));
+      XML_StopParser(parser_.get(), XML_FALSE);
+    }
+    below_root_ = true;
+  }
+
   static void XMLCALL on_start(void* user, const char* name, const char** attributes) {
     guarded(user, [&](Parsing& self) {
       if (self.open_.size() >= kMaxDepth) throw UrdfError("elements nested more than 100 deep");
@@ -68,14 +87,14 @@ class Parsing {
       for (; *attributes != nullptr; attributes += 2) {
         self.attributes_.push_back({attributes[0], attributes[1]});
       }
-      self.listener_.start(name, self.attributes_);
+      self.collect([&] { self.listener_.start(name, self.attributes_); });
     });
   }
 
   static void XMLCALL on_end(void* user, const char*) {
     guarded(user, [](Parsing& self) {
       self.open_.pop_back();
-      self.listener_.end();
+      self.collect([&] { self.listener_.end(); });
     });
   }
 
@@ -85,7 +104,7 @@ class Parsing {
 
   std::string where() const {
     const auto line = static_cast<long>(XML_GetCurrentLineNumber(parser_.get())) + lines_before_;
-    return "URDF line " + std::to_string(line) + ": ";
+    return (faults_.empty() ? "URDF line " : "line ") + std::to_string(line) + ": ";
   }
 
   std::string reason() const {
@@ -116,6 +135,9 @@ class Parsing {
   std::vector<XmlAttribute> attributes_;
   std::vector<std::string> open_;
   std::exception_ptr failure_;
+  std::string faults_;
+  int fault_count_ = 0;
+  bool below_root_ = false;  // the root element has been taken
   long lines_before_ = 0;
 };
 

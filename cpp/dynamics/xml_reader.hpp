@@ -9,7 +9,8 @@ struct XmlAttribute {
   std::string_view name, value;
 };
 
-// Hears of the elements of an XML text, in its order. An UrdfError that it throws gets the line.
+// Hears of the elements of an XML text, in its order. An UrdfError that it throws gets the line;
+// but for the root element it hears of the rest, too, so that all faults of a text are named.
 class XmlListener {
  public:
   virtual ~XmlListener() = default;

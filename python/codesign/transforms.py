@@ -66,6 +66,18 @@ def quaternion(R: Matrix) -> Matrix:
     return np.asarray(np.where(q[..., :1] < 0.0, -q, q))
 
 
+def rotation_from_quaternion(wxyz: Sequence[float] | Matrix) -> Matrix:
+    """Rotation matrix (3, 3) of a quaternion w, x, y, z of any length but zero."""
+    w, x, y, z = np.asarray(wxyz, dtype=float) / np.linalg.norm(wxyz)
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )
+
+
 def inverse(a_T_b: Matrix) -> Matrix:
     """b_T_a (..., 4, 4) of poses (..., 4, 4)."""
     b_T_a = np.zeros_like(a_T_b)

@@ -13,7 +13,7 @@ from codesign.cli.design import placed_components
 from codesign.cli.robot_files import flown_postures, write_urdf
 from codesign.robot.collisions import ignored_pairs
 from codesign.robot.description import RobotDescription
-from codesign.robot.drake_filters import urdf_collision_filters
+from codesign.robot.drake_filters import NAMESPACE, urdf_collision_filters
 from codesign.robot.mjcf import mjcf_text
 from codesign.robot.package import with_obj_meshes
 from codesign.robot.sdf import sdf_text
@@ -59,7 +59,7 @@ def export_robot(study_name: str, theta: dict[str, float], folder: Path, duratio
     robot = with_obj_meshes(written)
     log = dyn.simulate_flight(dyn.load_urdf(robot.to_text(), joints=settings.joints), settings)
     ignored = ignored_pairs(robot, flown_postures(settings, log))
-    written.with_elements(urdf_collision_filters(ignored)).write(folder / "robot.urdf")
+    written.with_elements(urdf_collision_filters(ignored), NAMESPACE).write(folder / "robot.urdf")
     for name, text in (("xml", mjcf_text), ("sdf", sdf_text), ("srdf", srdf_text)):
         (folder / f"robot.{name}").write_text(text(robot, settings, ignored))
     return Exported(folder, robot, settings, ignored, log)

@@ -1649,14 +1649,15 @@ def check_inertia(
     Raises: UrdfError naming the link and its principal moments.
     """
 
-def check_urdf(content: bytes, is_utf8: bool = False) -> str:
+def check_urdf(content: bytes, is_utf8: bool = False, as_published: bool = False) -> str:
     """
     Name of the root link of a URDF whose links, joints, inertias and shapes can be used.
 
     Args:
         content: the text as bytes.
         is_utf8: read it as UTF-8, whatever byte order mark and XML declaration say.
-    Raises: UrdfError naming line and element.
+        as_published: accept inertia tensors that no body can have; judged are the links that move as one.
+    Raises: UrdfError naming line and element of all faults.
     """
 
 def fitted_settings(model: Model, settings: FlightSettings) -> FlightSettings:
@@ -1783,7 +1784,8 @@ def load_urdf(
     Args:
         text_or_path: the text (starts with '<') or a path.
         joints: names of the joints that move, in the wanted order; all others are locked at position
-            0 and their links lumped. None: every joint that is not fixed, in the order of the URDF.
+            0 and their links lumped. None: every joint that is not fixed and mimics no other one, in
+            the order of the URDF. Joints that mimic one of them move along.
         as_published: accept inertia tensors that no body can have; nothing else is waived.
         fixed_base: hold the root link; nu and all matrices then lose the six base coordinates.
     Raises: UrdfError naming the element; UnknownNameError for a joint that is not there.

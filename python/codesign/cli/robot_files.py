@@ -25,7 +25,7 @@ from codesign.problem.evaluation import Evaluation
 from codesign.robot.clearance import SLICES
 from codesign.robot.collisions import ignored_pairs
 from codesign.robot.description import RobotDescription
-from codesign.robot.drake_filters import urdf_collision_filters
+from codesign.robot.drake_filters import NAMESPACE, urdf_collision_filters
 from codesign.robot.jets import flying_document
 from codesign.robot.mjcf import mjcf_text
 from codesign.robot.package import MeshWriter, with_obj_meshes, write_urdf_package
@@ -137,7 +137,7 @@ def _write_models(
 ) -> None:
     readable = with_obj_meshes(robot)
     ignored = ignored_pairs(readable, flown_postures(settings, log))
-    robot.with_elements(urdf_collision_filters(ignored), BOUNDS).write(folder / "robot.urdf")
+    robot.with_elements(urdf_collision_filters(ignored), NAMESPACE, BOUNDS).write(folder / "robot.urdf")
     robot = readable
     write_text(folder / "robot.srdf", srdf_text(robot, settings, ignored))
     if "mjcf" in formats:

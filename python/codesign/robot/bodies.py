@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from codesign.errors import UrdfError
-from codesign.robot.description import MOVING, RobotDescription
+from codesign.robot.description import RobotDescription
+from codesign.robot.urdf_xml import MOVING
 
 
 def child_joints(robot: RobotDescription) -> dict[str, list[str]]:

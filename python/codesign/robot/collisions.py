@@ -14,8 +14,9 @@ import yourdfpy
 
 from codesign.robot.bodies import child_joints, rigid_bodies
 from codesign.robot.clearance import CYLINDER_SIDES, hull_vertices, pair_clearances, posture_poses, shape_points
-from codesign.robot.description import MOVING, RobotDescription
+from codesign.robot.description import RobotDescription
 from codesign.robot.package import load_mesh
+from codesign.robot.urdf_xml import MOVING
 from codesign.transforms import Matrix
 
 Pairs = Mapping[tuple[str, str], str]  # two links -> why their collisions are left out, as an SRDF says it

@@ -23,10 +23,10 @@ from codesign.dynamics import check_urdf
 from codesign.errors import UrdfError
 from codesign.files import write_text
 from codesign.robot.inertial import Inertial
+from codesign.robot.urdf_xml import MOVING, normalized, number_text, parsed, resolved_mimics
 from codesign.transforms import Matrix, require_pose, rotation_about, rpy_from_rotation
 
 UPPER_TRIANGLE = ("xx", "xy", "xz", "yy", "yz", "zz")
-MOVING = ("revolute", "continuous", "prismatic")
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,19 +61,16 @@ class RobotDescription:
         """Checks and reads URDF text.
 
         as_published: accept inertias that no body can have (they are refused otherwise).
-        Raises: UrdfError naming the link or joint: malformed or too large text, document types, duplicate names,
-        missing or non-finite numbers, links that are not one tree, negative mass, non-physical inertia.
+        Raises: UrdfError naming the links or joints: malformed or too large text, document types, duplicate names,
+        missing or non-finite numbers, links that are not one tree, negative mass, non-physical inertia of links that
+        move as one.
         """
         # A string has its characters already, whatever encoding it declares; lone surrogates are refused as no UTF-8.
         content = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
-        root_link = check_urdf(content, isinstance(text, str))
-        robot = cls(root_link, directory, _parsed(content, ("utf-8",) if isinstance(text, str) else (None, "utf-8")))
+        root_link = check_urdf(content, isinstance(text, str), as_published)
+        robot = cls(root_link, directory, parsed(content, ("utf-8",) if isinstance(text, str) else (None, "utf-8")))
         if not robot._model.validate():
             raise UrdfError("; ".join(str(error) for error in robot._model.errors))
-        for name in () if as_published else robot.link_names:
-            inertial = robot.inertial(name)
-            if inertial is not None:
-                inertial.require_physical(name)
         return robot
 
     # ---- reading
@@ -95,8 +92,16 @@ class RobotDescription:
 
     @property
     def moving_joint_names(self) -> tuple[str, ...]:
-        """Names of the joints with one degree of freedom, in the file's order."""
-        return tuple(name for name, joint in self._joints.items() if joint.type in MOVING)
+        """Names of the joints with one degree of freedom that mimic no other one, in the file's order."""
+        return tuple(name for name, joint in self._joints.items() if joint.type in MOVING and name not in self.mimics)
+
+    @cached_property
+    def mimics(self) -> dict[str, tuple[str, float, float]]:
+        """Joint that mimics another -> that one, multiplier, offset: multiplier times its position plus offset.
+
+        A joint that follows one which follows a third is given by the third.
+        """
+        return resolved_mimics(self._joints)
 
     @property
     def total_mass(self) -> float:
@@ -139,6 +144,8 @@ class RobotDescription:
         for name in positions:
             if self.joint(name).type not in MOVING:
                 raise UrdfError(f"joint {name} does not move")
+            if name in self.mimics:
+                raise UrdfError(f"joint {name} mimics joint {self.mimics[name][0]}: give the position of that one")
         poses = {self.root_link: np.eye(4)}
         children: dict[str, list[yourdfpy.Joint]] = {}
         for joint in self._joints.values():
@@ -147,10 +154,15 @@ class RobotDescription:
         while pending:
             parent = pending.pop()
             for joint in children.get(parent, ()):
-                motion = _joint_motion(joint, positions.get(joint.name, 0.0))
+                motion = _joint_motion(joint, self._position(joint.name, positions))
                 poses[joint.child] = poses[parent] @ self.joint_origin(joint.name) @ motion
                 pending.append(joint.child)
         return poses
+
+    def _position(self, joint: str, positions: Mapping[str, ArrayLike]) -> ArrayLike:
+        """Position of a joint, zero where neither it nor what it follows is given."""
+        followed, multiplier, offset = self.mimics.get(joint, (joint, 1.0, 0.0))
+        return multiplier * np.asarray(positions.get(followed, 0.0), dtype=float) + offset
 
     def mesh_filenames(self) -> list[tuple[str, str]]:
         """(link, filename) of every mesh of the robot's visuals and collisions, as written in the file."""
@@ -246,9 +258,15 @@ class RobotDescription:
         xml.set("name", name)
         return RobotDescription(self.root_link, self.directory, xml)
 
-    def with_elements(self, elements: Sequence[ET.Element], comment: str = "") -> RobotDescription:
-        """The robot with a comment and elements that only other tools read, of another XML namespace, at its end."""
+    def with_elements(
+        self, elements: Sequence[ET.Element], namespaces: Mapping[str, str], comment: str = ""
+    ) -> RobotDescription:
+        """The robot with a comment and elements that only other tools read at its end.
+
+        namespaces: attributes of the root that declare the prefixes of their names, such as `xmlns:drake`.
+        """
         xml = copy.copy(self._xml)
+        xml.attrib = {**self._xml.attrib, **namespaces}
         if comment:
             xml.append(ET.Comment(comment))
         xml.extend(elements)
@@ -299,7 +317,8 @@ class RobotDescription:
 
     @cached_property
     def _model(self) -> yourdfpy.URDF:
-        return yourdfpy.URDF.load(io.BytesIO(ET.tostring(self._xml)), build_scene_graph=False, load_meshes=False)
+        text = ET.tostring(normalized(self._xml))
+        return yourdfpy.URDF.load(io.BytesIO(text), build_scene_graph=False, load_meshes=False)
 
     @cached_property
     def _links(self) -> dict[str, yourdfpy.Link]:
@@ -324,22 +343,6 @@ class RobotDescription:
             if old.tag == element.tag and old.get("name") == element.get("name"):
                 xml[index] = element
         return RobotDescription(self.root_link, self.directory, xml)
-
-
-def _parsed(content: bytes, encodings: Sequence[str | None]) -> ET.Element:
-    """Root element of checked text, with comments, in the first encoding that fits; None: the one that it declares."""
-    for encoding in encodings:
-        parser = ET.XMLParser(target=ET.TreeBuilder(insert_comments=True), encoding=encoding)
-        try:
-            return ET.fromstring(content.lstrip(), parser=parser)
-        except ET.ParseError as error:
-            reason = error
-    raise UrdfError(f"not readable text: {reason}")
-
-
-def number_text(values: ArrayLike) -> str:
-    """Numbers of an URDF attribute: shortest text that reads back exactly, no negative zero."""
-    return " ".join(repr(float(value) + 0.0) for value in np.asarray(values, dtype=float).ravel())
 
 
 def _find(named: Mapping[str, Any], name: str, kind: str) -> Any:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from codesign.robot.collisions import Pairs
 
 DRAKE = "drake.mit.edu"
+NAMESPACE = {"xmlns:drake": DRAKE}
 MEMBER, IGNORED = "member", "ignored_collision_filter_group"
 
 
@@ -33,11 +34,12 @@ def collision_filters(ignored: Pairs, hosts: Mapping[str, str] | None = None) ->
 
 
 def urdf_collision_filters(ignored: Pairs) -> list[ET.Element]:
-    """The same as a URDF has them, names as attributes."""
-    groups = collision_filters(ignored)
-    for group in groups:
+    """The same as a URDF has them: names are attributes, the prefix `drake:` is that of `NAMESPACE`."""
+    groups = []
+    for group in collision_filters(ignored):
+        written = ET.Element("drake:collision_filter_group", group.attrib)
         for element in group:
-            key = "link" if element.tag.endswith(f"}}{MEMBER}") else "name"
-            element.set(key, str(element.text))
-            element.text = None
+            tag = str(element.tag).rpartition("}")[2]
+            ET.SubElement(written, f"drake:{tag}", {"link" if tag == MEMBER else "name": str(element.text)})
+        groups.append(written)
     return groups

@@ -8,7 +8,7 @@ import numpy as np
 
 from codesign import dynamics as dyn
 from codesign.robot.bodies import depth_first
-from codesign.robot.description import MOVING, RobotDescription
+from codesign.robot.description import RobotDescription
 from codesign.transforms import quaternion
 
 UNITS = "SI: m, kg, s, N, rad; velocities of the base in world axes; quaternions w, x, y, z"
@@ -20,10 +20,12 @@ def flying_document(robot: RobotDescription, settings: dyn.FlightSettings) -> di
 
     jets: frame is a link of the URDF; axis, unit vector in it, along which the thrust pushes; reaction: moment about
     the axis per thrust. joints: in the order of every vector over joints; joints_held: moving joints that the flight
-    keeps at zero. start: of base (pose of the root link in the world), joints and thrusts.
+    keeps at zero; joints_that_mimic: position = multiplier times that of `joint` plus offset. start: of base (pose of
+    the root link in the world), joints and thrusts.
     """
     pose = settings.base_pose
-    held = [name for name in depth_first(robot) if robot.joint(name).type in MOVING and name not in settings.joints]
+    own = [name for name in depth_first(robot) if name in robot.moving_joint_names]
+    held = [name for name in own if name not in settings.joints]
     return {
         "robot": robot.name,
         "base_link": robot.root_link,
@@ -32,6 +34,10 @@ def flying_document(robot: RobotDescription, settings: dyn.FlightSettings) -> di
         "jets": [_jet(jet) for jet in settings.actuators],
         "joints": list(settings.joints),
         "joints_held": held,
+        "joints_that_mimic": {
+            name: {"joint": joint, "multiplier": multiplier, "offset": offset}
+            for name, (joint, multiplier, offset) in robot.mimics.items()
+        },
         "start": {
             "base_position": pose[:3, 3].tolist(),
             "base_quaternion": quaternion(pose[:3, :3]).tolist(),

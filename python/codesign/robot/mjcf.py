@@ -14,9 +14,10 @@ import yourdfpy
 
 from codesign import dynamics as dyn
 from codesign.errors import UrdfError
-from codesign.robot.bodies import child_joints, depth_first, has_mass
+from codesign.robot.bodies import child_joints, depth_first, has_mass, rigid_bodies
 from codesign.robot.collisions import Pairs
-from codesign.robot.description import MOVING, RobotDescription, number_text
+from codesign.robot.description import RobotDescription
+from codesign.robot.urdf_xml import MOVING, number_text
 from codesign.transforms import Matrix, quaternion
 
 GRAVITY = 9.81  # m/s², along -z of the world, as flown
@@ -45,11 +46,12 @@ def mjcf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pa
     assets = ET.SubElement(root, "asset")
     base = ET.SubElement(ET.SubElement(root, "worldbody"), "body", name=robot.root_link)
     ET.SubElement(base, "freejoint", name="root")
+    _refuse_bodies_without_mass(robot)
     _Bodies(robot, settings.actuators, assets).fill(base, robot.root_link)
     actuators = ET.SubElement(root, "actuator")
     for jet in settings.actuators:
         _append_jet(actuators, robot, jet)
-    for name in _moving(robot):
+    for name in (name for name in _moving(robot) if name not in robot.mimics):
         torque = _torque_range(robot, settings, name)
         ET.SubElement(actuators, "motor", {"name": name, "joint": name} | ({"ctrlrange": torque} if torque else {}))
     contact = ET.SubElement(root, "contact")
@@ -117,6 +119,17 @@ class _Bodies:
     def _color(self, material: yourdfpy.Material | None) -> dict[str, str]:
         rgba = self.colors.get(getattr(material, "name", None) or "")
         return {} if rgba is None else {"rgba": number_text(rgba)}
+
+
+def _refuse_bodies_without_mass(robot: RobotDescription) -> None:
+    body = rigid_bodies(robot)
+    heavy = {body[link] for link in robot.link_names if has_mass(robot, link)}
+    light = [first for first in dict.fromkeys(body.values()) if first not in heavy]
+    if light:
+        raise UrdfError(
+            f"link {', '.join(light)} moves but has no mass, nor has a link fixed to it: MuJoCo has no such bodies; "
+            "leave out mjcf"
+        )
 
 
 def _placed(a_T_b: Matrix) -> dict[str, str]:
@@ -188,20 +201,19 @@ def _torque_range(robot: RobotDescription, settings: dyn.FlightSettings, name: s
 
 
 def _append_mimics(root: ET.Element, robot: RobotDescription) -> None:
-    mimics = [name for name in _moving(robot) if robot.joint(name).mimic is not None]
-    if mimics:
+    if robot.mimics:
         equality = ET.SubElement(root, "equality")
-        for name in mimics:
-            mimic = robot.joint(name).mimic
-            one, zero = (1.0 if mimic.multiplier is None else mimic.multiplier), mimic.offset or 0.0
-            ET.SubElement(
-                equality, "joint", joint1=name, joint2=mimic.joint, polycoef=number_text([zero, one, 0, 0, 0])
-            )
+        for name, (followed, multiplier, offset) in robot.mimics.items():
+            coefficients = number_text([offset, multiplier, 0, 0, 0])
+            ET.SubElement(equality, "joint", joint1=name, joint2=followed, polycoef=coefficients)
 
 
 def _append_start(root: ET.Element, robot: RobotDescription, settings: dyn.FlightSettings) -> None:
     angles = dict(zip(settings.joints, settings.initial_joints.tolist(), strict=True))
     moving = _moving(robot)
+    own = [name for name in moving if name not in robot.mimics]
+    for name, (followed, multiplier, offset) in robot.mimics.items():
+        angles[name] = multiplier * angles.get(followed, 0.0) + offset
     pose = settings.base_pose
     numbers = {"qpos": [*pose[:3, 3], *quaternion(pose[:3, :3]), *(angles.get(name, 0.0) for name in moving)]}
     thrusts = list(zip(settings.actuators, settings.initial_thrusts.tolist(), strict=True))
@@ -210,4 +222,4 @@ def _append_start(root: ET.Element, robot: RobotDescription, settings: dyn.Fligh
     numbers |= {"act": states} if states else {}
     key = {name: number_text(values) for name, values in numbers.items()}
     keyframe = ET.SubElement(root, "keyframe")
-    ET.SubElement(keyframe, "key", {"name": START, **key, "ctrl": number_text([*rates, *([0.0] * len(moving))])})
+    ET.SubElement(keyframe, "key", {"name": START, **key, "ctrl": number_text([*rates, *([0.0] * len(own))])})

@@ -15,26 +15,29 @@ from codesign import dynamics as dyn
 from codesign.errors import UrdfError
 from codesign.robot.bodies import depth_first, has_mass, rigid_bodies
 from codesign.robot.collisions import Pairs
-from codesign.robot.description import MOVING, RobotDescription, number_text
+from codesign.robot.description import RobotDescription
 from codesign.robot.drake_filters import collision_filters
+from codesign.robot.urdf_xml import MOVING, number_text
 from codesign.transforms import Matrix, inverse, rpy_from_rotation
 
 VERSION = "1.9"  # the highest one that libsdformat 12 knows
+WITH_MIMICS = "1.11"  # the lowest one in which a joint can follow another
 OURS = "codesign"
 LIMITS = ("lower", "upper", "effort", "velocity")
 
 
 def sdf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pairs) -> str:
-    """SDF 1.9 of the free-floating robot, its jets as frames JET_jet and as elements `codesign:jet`.
+    """SDF of the free-floating robot, its jets as frames JET_jet and as elements `codesign:jet`.
 
-    SDF has no word for a jet, and Gazebo's thruster turns a propeller on a joint: `codesign:jet` names frame, axis and
-    limits as `robot.json` does, and readers skip it. `drake:collision_filter_group` leaves out the pairs `ignored`.
+    Version 1.9, or 1.11 where joints mimic others. SDF has no word for a jet, and Gazebo's thruster turns a propeller
+    on a joint: `codesign:jet` names frame, axis and limits as `robot.json` does, and readers skip it.
+    `drake:collision_filter_group` leaves out the pairs `ignored`.
 
     robot: its meshes with paths relative to where the text will stand (Drake reads OBJ alone).
-    Raises: UrdfError for joints that SDF 1.9 cannot say, a moving body without mass, a jet whose frame the robot lacks.
+    Raises: UrdfError for joints that SDF cannot say, a moving body without mass, a jet whose frame the robot lacks.
     """
     ET.register_namespace(OURS, OURS)
-    root = ET.Element("sdf", version=VERSION)
+    root = ET.Element("sdf", version=WITH_MIMICS if robot.mimics else VERSION)
     model = ET.SubElement(root, "model", name=robot.name)
     writer = _Writer(robot, settings, model)
     writer.append_link(robot.root_link, None)
@@ -85,8 +88,6 @@ class _Writer:
         if joint.type == "fixed" and (host != joint.child or host in self.written):
             self.append_link(joint.child, None)
             return
-        if joint.mimic is not None:
-            raise UrdfError(f"joint {name}: SDF {VERSION} has no joints that follow another one; leave out sdf")
         element = ET.SubElement(self.model, "joint", name=name, type=joint.type)
         pose = self._between(self.hosts[joint.parent], joint.child)
         element.append(_pose(pose, self.hosts[joint.parent]))
@@ -148,6 +149,11 @@ class _Writer:
                 value = self.settings.limits.torque
             if value is not None and not (joint.type == "continuous" and key in ("lower", "upper")):
                 ET.SubElement(limit, key).text = number_text(value)
+        if name in self.robot.mimics:
+            followed, multiplier, offset = self.robot.mimics[name]
+            mimic = ET.SubElement(axis, "mimic", joint=followed)
+            for key, value in (("multiplier", multiplier), ("offset", offset), ("reference", 0.0)):
+                ET.SubElement(mimic, key).text = number_text(value)
         if joint.dynamics is not None:
             dynamics = ET.SubElement(axis, "dynamics")
             for key in ("damping", "friction"):

@@ -6,7 +6,8 @@ import xml.etree.ElementTree as ET
 
 from codesign import dynamics as dyn
 from codesign.robot.collisions import Pairs
-from codesign.robot.description import RobotDescription, number_text
+from codesign.robot.description import RobotDescription
+from codesign.robot.urdf_xml import number_text
 
 GROUP, START = "flown", "start"
 

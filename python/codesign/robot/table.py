@@ -16,7 +16,8 @@ import msgspec
 
 from codesign.errors import UrdfError
 from codesign.files import write_text
-from codesign.robot.description import UPPER_TRIANGLE, RobotDescription, number_text
+from codesign.robot.description import UPPER_TRIANGLE, RobotDescription
+from codesign.robot.urdf_xml import number_text
 from codesign.units import DEGREE
 
 Vector = tuple[float, float, float]

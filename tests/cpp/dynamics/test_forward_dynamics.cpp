@@ -122,12 +122,17 @@ TEST(ForwardDynamics, KeepsTheDigitsOfALightFingerOnALongArm) {
 }
 
 TEST(ForwardDynamics, ASingularMassMatrixGivesNoNumbers) {
-  const std::string none = R"(ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0")";
-  const Model model = load_urdf(robot(link("base") + link("point", inertial(1.0, "0 0 0", none)) +
-                                      joint("turn", "revolute", "base", "point")),
-                                {.as_published = true});
-  Sample sample(model, random_state(model, 16));
-  EXPECT_FALSE(sample.forward(Eigen::VectorXd::Ones(1)).allFinite());
+  // A straight wrist without mass between its rolls, which are then one.
+  const auto axis = [](const char* xyz) { return std::string("<axis xyz=\"") + xyz + "\"/>"; };
+  const Model model =
+      load_urdf(robot(link("base") + link("first", "") + link("second", "") + link("hand") +
+                      joint("roll", "continuous", "base", "first", axis("1 0 0")) +
+                      joint("pitch", "continuous", "first", "second", axis("0 1 0")) +
+                      joint("turn", "continuous", "second", "hand", axis("1 0 0"))));
+  auto state = random_state(model, 16);
+  state.s.setZero();
+  Sample sample(model, state);
+  EXPECT_FALSE(sample.forward(Eigen::VectorXd::Ones(3)).allFinite());
 }
 
 }  // namespace

@@ -219,7 +219,10 @@ TEST(Urdf, RefusesNumbersThatAreNone) {
                  {"above the limit of 1e+09"});
   expect_refused(replaced(good, "0.1 0 0", "1e10 0 0"),
                  {"joint \"mount\"", "above the limit of 1e+09"});
-  expect_refused(replaced(good, "rpy=\"0 0 0\"", "quat_xyzw=\"0 0 0 1\""), {"quat_xyzw"});
+  EXPECT_EQ(refusal(replaced(good, "rpy=\"0 0 0\"", "quat_xyzw=\"0 0 0 1\"")), "");
+  expect_refused(replaced(good, "rpy=\"0 0 0\"", "quat_xyzw=\"0 0 0 0\""), {"quat_xyzw", "length"});
+  expect_refused(replaced(good, "rpy=\"0 0 0\"", "quat_xyzw=\"0 0 1\""),
+                 {"quat_xyzw", "3 numbers"});
 }
 
 TEST(Urdf, RefusesDuplicates) {
@@ -265,26 +268,66 @@ TEST(Urdf, RefusesJointsThatCannotMove) {
   expect_refused(replaced(good, "0 0 1", "0 0 1e-9"), {"joint \"turn\"", "axis"});
   const std::string mimic =
       replaced(good, "<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\"/><mimic joint=\"other\"/>");
-  expect_refused(mimic, {"joint \"turn\"", "mimics", "other"});
-  EXPECT_EQ(load_urdf(mimic, {.joints = std::vector<std::string>{}}).body_count(), 1);
+  expect_refused(mimic, {"joint \"turn\"", "mimics", "other", "does not exist"});
+  expect_refused(replaced(mimic, "joint=\"other\"", "joint=\"turn\""), {"turn", "in turn"});
+  expect_refused(replaced(mimic, "joint=\"other\"", "joint=\"turn\""),
+                 {"joint \"turn\"", "name that one"}, {.joints = {{"turn"}}});
   expect_refused(good, {"joint \"mount\"", "fixed"}, {.joints = {{"mount"}}});
   expect_refused(good, {"joint \"turn\"", "twice"}, {.joints = {{"turn", "turn"}}});
   EXPECT_THROW(load_urdf(good, {.joints = {{"none"}}}), UnknownNameError);
 }
 
 TEST(Urdf, RefusesBodiesWithoutMass) {
-  expect_refused(with_arm(""), {"link \"arm\"", "no mass"});
-  expect_refused(with_arm(inertial(0.0, "0 0 0", tensor("0", "0", "0"))),
-                 {"link \"arm\"", "no mass"});
+  const std::vector<std::string> words = {"joint \"turn\"",
+                                          "can move without anything that has mass"};
+  expect_refused(with_arm(""), words);
+  expect_refused(with_arm(inertial(0.0, "0 0 0", tensor("0", "0", "0"))), words);
   const std::string massless_base =
       robot(link("base", "") + link("arm") + joint("turn", "revolute", "base", "arm"));
-  expect_refused(massless_base, {"link \"base\"", "no mass"});
+  expect_refused(massless_base, {"link \"base\"", "can move without", "fixed_base=True"});
   EXPECT_EQ(load_urdf(massless_base, {.fixed_base = true}).dofs(), 1);
   expect_refused(robot(link("base", "")), {"no mass"}, {.fixed_base = true});
   // Nothing of this is waived.
-  expect_refused(with_arm(""), {"link \"arm\"", "no mass"}, {.as_published = true});
+  expect_refused(with_arm(""), words, {.as_published = true});
   expect_refused(with_arm(inertial(-1.0)), {"link \"arm\"", "negative mass"},
                  {.as_published = true});
+}
+
+TEST(Urdf, CrossesWithoutMassPassWhereTheMassMatrixIsRegular) {
+  const auto universal = [](const char* second) {
+    return robot(link("base") + link("cross", "") + link("arm") +
+                 joint("roll", "continuous", "base", "cross") +
+                 replaced(joint("pitch", "continuous", "cross", "arm"), "0 0 1", second));
+  };
+  const Model model = load_urdf(universal("0 1 0"));
+  EXPECT_EQ(model.body_count(), 3);
+  EXPECT_EQ(model.bodies[1].inertia.mass, 0.0);
+  expect_refused(universal("0 0 1"), {"joint \"roll\"", "can move without"});
+}
+
+TEST(Urdf, JointsThatMimicMoveAlong) {
+  const auto follower = [](const std::string& name, const std::string& parent,
+                           const std::string& mimic) {
+    return link(name) +
+           joint(name, "continuous", parent, name, "<axis xyz=\"0 0 1\"/><mimic " + mimic + "/>");
+  };
+  const std::string text =
+      robot(link("base") + link("lead") + joint("lead", "continuous", "base", "lead") +
+            follower("second", "lead", R"(joint="lead" multiplier="-2" offset="0.5")") +
+            follower("third", "second", R"(joint="second" multiplier="3" offset="1")"));
+  const Model model = load_urdf(text);
+  ASSERT_EQ(model.joint_count(), 1);
+  ASSERT_EQ(model.body_count(), 4);
+  EXPECT_TRUE(model.mimics);
+  EXPECT_EQ(model.bodies[2].ratio, -2.0);
+  EXPECT_EQ(model.bodies[2].offset, 0.5);
+  EXPECT_EQ(model.bodies[3].ratio, -6.0);
+  EXPECT_EQ(model.bodies[3].offset, 2.5);
+  // The lead is locked at zero: its followers stay at their offsets.
+  const Model locked = load_urdf(text, {.joints = std::vector<std::string>{}});
+  ASSERT_EQ(locked.body_count(), 1);
+  const Eigen::Matrix3d turned = locked.frames.back().body_T_frame.R;
+  EXPECT_NEAR(turned(1, 0), std::sin(3.0), 1e-15);
 }
 
 TEST(Urdf, RefusesIncompleteInertials) {
@@ -321,7 +364,7 @@ TEST(Urdf, RefusesInertiaThatNoBodyCanHave) {
   }
   // A point mass is the limit of a body: fine on a body, not as one that turns.
   const std::string point = inertial(1.0, "0 0 0", tensor("0", "0", "0"));
-  expect_refused(with_arm(point), {"link \"arm\"", "not positive"});
+  expect_refused(with_arm(point), {"joint \"turn\"", "can move without"});
   EXPECT_EQ(refusal(robot(link("base") + link("arm", point) + joint("f", "fixed", "base", "arm"))),
             "");
   expect_refused(with_arm(inertial(0.0, "0 0 0", tensor("0.1", "0.1", "0.1"))), {"without mass"});

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,9 @@ import pytest
 
 from codesign import dynamics as dyn
 from codesign.errors import SolverError, UnknownNameError, UrdfError
+from codesign.robot.description import RobotDescription
+from codesign.transforms import quaternion as quaternion_of
+from codesign.transforms import rotation_from_rpy
 
 INERTIAL = "<inertial><mass value='2'/><inertia ixx='0.2' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.2'/></inertial>"
 ARM = f"""<robot name="arm">
@@ -27,6 +31,7 @@ ARM = f"""<robot name="arm">
 </robot>"""
 POSE = np.array([[0.0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])
 S = np.array([0.3, 0.1])
+WRIST = {"trunk": INERTIAL, "first": "", "second": "", "hand": INERTIAL}
 NU = np.arange(1.0, 9.0)
 TAU = np.array([3.0, -2.0])
 
@@ -177,11 +182,71 @@ def test_errors_are_typed_and_name_the_element() -> None:
 
 
 def test_singular_dynamics_are_a_solver_error() -> None:
+    """Roll, pitch, roll through crosses without mass: regular but for a straight wrist, whose rolls are one."""
+    links = "".join(f'<link name="{name}">{inside}</link>' for name, inside in WRIST.items())
+    joints = "".join(
+        f'<joint name="{child}" type="continuous"><parent link="{parent}"/><child link="{child}"/><axis xyz="{axis}"/>'
+        "</joint>"
+        for (parent, child), axis in zip(pairwise(WRIST), ("1 0 0", "0 1 0", "1 0 0"), strict=True)
+    )
+    model = dyn.load_urdf(f'<robot name="wrist">{links}{joints}</robot>')
+    with pytest.raises(SolverError, match="singular"):
+        dyn.forward_dynamics(model, np.eye(4), np.zeros(3), np.zeros(9), np.ones(3))
+    bent = np.array([0.1, 0.7, -0.2])
+    nu_dot = dyn.forward_dynamics(model, np.eye(4), bent, np.zeros(9), np.ones(3))
+    forces = dyn.inverse_dynamics(model, np.eye(4), bent, np.zeros(9), nu_dot)
+    np.testing.assert_allclose(forces, [0, 0, 0, 0, 0, 0, 1, 1, 1], atol=1e-12)
+
+
+def test_motions_without_mass_are_refused_with_their_joint() -> None:
+    with pytest.raises(UrdfError, match='joint "slide" can move without anything that has mass'):
+        dyn.load_urdf(ARM.replace(INERTIAL, "").replace('<link name="base">', f'<link name="base">{INERTIAL}'))
     point = INERTIAL.replace("'0.2'", "'0'")
     text = ARM.replace(f'"lower">{INERTIAL}', f'"lower">{point}').replace("prismatic", "revolute")
-    model = dyn.load_urdf(text, as_published=True)
-    with pytest.raises(SolverError, match="singular"):
-        dyn.forward_dynamics(model, np.eye(4), np.zeros(2), np.zeros(8), np.ones(2))
+    with pytest.raises(UrdfError, match='joint "slide" can move without anything that has mass'):
+        dyn.load_urdf(text, as_published=True)
+    root = ARM.replace(f'<link name="base">{INERTIAL}', '<link name="base">')
+    with pytest.raises(UrdfError, match=r'link "base" can move without .*; fixed_base=True, which holds link "base"'):
+        dyn.load_urdf(root)
+    assert len(dyn.load_urdf(root, fixed_base=True).joint_names) == 2
+
+
+def test_all_faults_are_named_at_once() -> None:
+    text = ARM.replace('xyz="0 0 0.5"', 'xyz="0 0 x"').replace('xyz="1 0 0"', 'xyz="0 0 0"').replace('"30"', '"a"')
+    with pytest.raises(UrdfError) as caught:
+        dyn.load_urdf(text)
+    for words in ('"x" is not a number', "an axis of length zero", 'limit effort: "a" is not'):
+        assert words in str(caught.value)
+    bad = INERTIAL.replace("ixx='0.2'", "ixx='-0.2'")
+    with pytest.raises(UrdfError, match=r'"base": non-phys.*"upper": non-phys.*"lower" with those fixed'):
+        dyn.load_urdf(ARM.replace(INERTIAL, bad))
+
+
+def test_masses_are_judged_as_they_move() -> None:
+    """A marker of a microgram with a wrong tensor costs no robot; a body as a whole must be one."""
+    numbers = " ".join(f"i{key}='1e-6'" for key in ("xx", "xy", "xz", "yy", "yz", "zz"))
+    marker = f"<inertial><mass value='1e-6'/><inertia {numbers}/></inertial>"
+    text = ARM.replace('<link name="tip"/>', f'<link name="tip">{marker}</link>')
+    assert dyn.load_urdf(text).total_mass == pytest.approx(6.000001)
+    assert RobotDescription.from_text(text).total_mass == pytest.approx(6.000001)
+
+
+def test_a_quaternion_places_as_its_angles_do() -> None:
+    rpy, quaternion = 'rpy="0.3 1.5707963 -2"', "{0!r} {1!r} {2!r} {3!r}"
+    R = rotation_from_rpy([0.3, 1.5707963, -2.0])
+    w, x, y, z = (2.0 * quaternion_of(R)).tolist()  # of any length
+    origin = '<origin xyz="0.4 0 0"'
+    turned = ARM.replace(origin, f"{origin} {rpy}")
+    text = ARM.replace(origin, f'{origin} quat_xyzw="{quaternion.format(x, y, z, w)}"')
+    for read in (dyn.load_urdf, RobotDescription.from_text):
+        a, b = (read(one) for one in (turned, text))
+        if isinstance(a, RobotDescription):
+            a, b = (one.frame_poses()["tip"] for one in (a, b))
+        else:
+            a, b = (dyn.frame_pose(one, np.eye(4), np.zeros(2), "tip") for one in (a, b))
+        np.testing.assert_allclose(a, b, atol=1e-15)
+    with pytest.raises(UrdfError, match="both rpy and quat_xyzw"):
+        dyn.load_urdf(ARM.replace(origin, f'{origin} {rpy} quat_xyzw="0 0 0 1"'))
 
 
 def test_threads_share_a_model(arm: dyn.Model) -> None:

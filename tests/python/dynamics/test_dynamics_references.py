@@ -265,3 +265,29 @@ def test_against_idyntree(model: dyn.Model, idyntree: IDynTreeReference, seed: i
         for name, expected in idyntree.frame(frame).items():
             x_frame = (*x, state.nu) if name in ("frame_velocity", "frame_bias_acceleration") else x
             assert_close(getattr(dyn, name)(*x_frame, frame), expected, f"{name} of {frame}")
+
+
+@pytest.mark.parametrize("robot", [one for one in ROBOTS if one.name in ("Panda", "PR2")], ids=str)
+def test_mimic_joints_move_along_as_in_pinocchio(robot: Robot) -> None:
+    """The fingers of a hand; mass matrix and bias of a fixed base, and forward dynamics as their inverse."""
+    model = dyn.load_urdf(robot.file(), as_published=robot.as_published, fixed_base=True)
+    other = pin.buildModelFromUrdf(str(robot.file()), mimic=True)
+    data, rng = other.createData(), np.random.default_rng(1)
+    joints = [other.joints[other.getJointId(name)] for name in model.joint_names]
+    assert sum(joint.nv for joint in joints) == other.nv == len(joints)
+    order = [joint.idx_v for joint in joints]
+    for _ in STATES:
+        s, nu, tau = rng.uniform(-1, 1, (3, len(joints)))
+        q, v = pin.neutral(other), np.zeros(other.nv)
+        v[order] = nu
+        for k, joint in enumerate(joints):
+            angle = [np.cos(s[k]), np.sin(s[k])] if joint.nq == 2 else [s[k]]
+            q[joint.idx_q : joint.idx_q + joint.nq] = angle
+        M = pin.crba(other, data, q)
+        M = (np.triu(M) + np.triu(M, 1).T)[np.ix_(order, order)]
+        bias = pin.rnea(other, data, q, v, np.zeros(other.nv))[order]
+        np.testing.assert_allclose(dyn.mass_matrix(model, np.eye(4), s), M, atol=TOLERANCE * np.abs(M).max())
+        found = dyn.bias_forces(model, np.eye(4), s, nu)
+        np.testing.assert_allclose(found, bias, atol=TOLERANCE * np.abs(bias).max())
+        nu_dot = dyn.forward_dynamics(model, np.eye(4), s, nu, tau)
+        np.testing.assert_allclose(dyn.inverse_dynamics(model, np.eye(4), s, nu, nu_dot), tau, atol=1e-8)

@@ -20,7 +20,7 @@ URDF = f"""<?xml version="1.0"?>
   <link name="tool"/>
   <joint name="turn" type="revolute">
     <origin xyz="0.30000000000000004 0 0" rpy="0 0.1 0"/><parent link="base"/><child link="arm"/><axis xyz="0 0 2"/>
-    <limit lower="-1" upper="1" effort="5" velocity="5"/><dynamics damping="2.0"/><mimic joint="other" multiplier="2"/>
+    <limit lower="-1" upper="1" effort="5" velocity="5"/><dynamics damping="2.0"/><safety_controller k_velocity="1"/>
   </joint>
   <joint name="slide" type="prismatic">
     <parent link="arm"/><child link="tool"/><axis xyz="1 0 0"/><limit lower="0" upper="1" effort="5" velocity="5"/>
@@ -54,7 +54,7 @@ def test_reads_names_masses_and_frames(robot):
 def test_writes_back_what_it_read(robot, tmp_path):
     again = RobotDescription.load(robot.write(tmp_path / "a.urdf"))
     assert again.to_text() == robot.to_text()
-    for kept in ("kept", "0.30000000000000004", "<mimic", "<gazebo", "<sensor", 'damping="2.0"'):
+    for kept in ("kept", "0.30000000000000004", "<safety_controller", "<gazebo", "<sensor", 'damping="2.0"'):
         assert kept in again.to_text()
     assert [path.name for path in tmp_path.iterdir()] == ["a.urdf"]
 
@@ -188,7 +188,7 @@ def test_non_physical_inertia_is_refused_on_reading_unless_asked_for():
         ('<mass value="2"/>', '<mass value="-2"/>', 'link "base": negative mass'),
         ('ixy="0" ', "", 'link "base": its <inertia> has no ixy'),
         ('xyz="0 0 0.1"', 'xyz="0 0.1"', "2 numbers instead of 3"),
-        ('size="0.1 0.1 0.2"', 'size="0.1 0 0.2"', 'box size: "0" is not greater than zero'),
+        ('size="0.1 0.1 0.2"', 'size="0.1 -1 0.2"', 'box size: "-1" is below zero'),
         ("<box", "<cone", 'link "base": <cone> is no shape: box, cylinder'),
         ('<box size="0.1 0.1 0.2"/>', "", 'link "base": its <geometry> is empty'),
         (
@@ -270,3 +270,44 @@ def test_a_failed_write_leaves_the_old_file(robot, tmp_path, monkeypatch):
         robot.write(target)
     assert target.read_text() == "old"
     assert list(tmp_path.iterdir()) == [target]
+
+
+def test_odd_drawings_cost_no_robot():
+    """Prefixes that nobody declares, primitives without extent, capsules, elements beside a shape."""
+    text = URDF.replace("<sensor", '<gazebo:plugin drake:name="x"/><sensor').replace(
+        "<limit", '<limit drake:jerk="1"', 1
+    )
+    text = text.replace('<box size="0.1 0.1 0.2"/>', '<capsule radius="0.1" length="0.4"/><material name="x"/>', 1)
+    text = text.replace('<box size="0.1 0.1 0.2"/>', '<box size="0.1 0 0.2"/>', 1)
+    robot = RobotDescription.from_text(text)
+    assert "<gazebo:plugin" in robot.to_text()
+    shapes = robot.link("base").visuals
+    assert [(s.geometry.sphere is not None, s.origin[2, 3]) for s in shapes] == [
+        (True, pytest.approx(-0.1)),
+        (True, pytest.approx(0.3)),
+        (False, pytest.approx(0.1)),
+    ]
+    assert shapes[2].geometry.cylinder.length == 0.4
+    assert robot.link("base").collisions == []
+    assert RobotDescription.from_text(robot.to_text()).to_text() == robot.to_text()
+
+
+def test_limits_without_ends_are_zero():
+    text = URDF.replace('lower="-1" upper="1" ', "")
+    limit = RobotDescription.from_text(text).joint("turn").limit
+    assert (limit.lower, limit.upper, limit.effort) == (0.0, 0.0, 5.0)
+
+
+def test_mimic_joints_follow():
+    slide = '<axis xyz="1 0 0"/>'
+    text = URDF.replace(slide, slide + '<mimic joint="turn" multiplier="0.5" offset="0.1"/>')
+    robot = RobotDescription.from_text(text)
+    assert robot.mimics == {"slide": ("turn", 0.5, 0.1)}
+    assert robot.moving_joint_names == ("turn",)
+    free = RobotDescription.from_text(URDF)
+    for turn in (0.0, 0.7, np.array([0.2, -0.4])):
+        expected = free.frame_poses({"turn": turn, "slide": 0.5 * np.asarray(turn) + 0.1})
+        np.testing.assert_array_equal(robot.frame_poses({"turn": turn})["tool"], expected["tool"])
+    np.testing.assert_array_equal(robot.frame_poses()["tool"], free.frame_poses({"slide": 0.1})["tool"])
+    with pytest.raises(UrdfError, match="joint slide mimics joint turn: give the position of that one"):
+        robot.frame_poses({"slide": 0.3})

@@ -215,3 +215,28 @@ def test_lags_and_turbines_and_reactions():
         mujoco.mj_forward(model, data)
         expected = 8.0 - 4.0 * np.exp(-1.0) if model.na else 8.0
         assert data.actuator("jet").force[0] == pytest.approx(expected, rel=1e-8)
+
+
+def mimicking():
+    """A lead and a follower on a base, 1 kg each."""
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    text = "".join(f'<link name="{name}">{inertial}</link>' for name in ("base", "lead", "follower"))
+    for name, inside in (("lead", ""), ("follower", '<mimic joint="lead" multiplier="-2" offset="0.3"/>')):
+        text += (
+            f'<joint name="{name}" type="continuous"><parent link="base"/><child link="{name}"/>'
+            f'<origin xyz="0.5 0 0"/><axis xyz="0 0 1"/>{inside}</joint>'
+        )
+    return RobotDescription.from_text(f'<robot name="m">{text}</robot>')
+
+
+def test_mimic_joints_are_equalities_without_motor():
+    settings = dyn.FlightSettings()
+    settings.joints, settings.initial_joints = ["lead"], np.array([0.2])
+    model = mujoco.MjModel.from_xml_string(mjcf_text(mimicking(), settings, {}))
+    data = mujoco.MjData(model)
+    assert [model.actuator(k).name for k in range(model.nu)] == ["lead"]
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    assert data.joint("follower").qpos[0] == -2 * 0.2 + 0.3
+    mujoco.mj_forward(model, data)
+    assert np.abs(data.efc_pos).max() < 1e-15
+    assert data.nefc == 1

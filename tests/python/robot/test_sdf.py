@@ -218,3 +218,17 @@ def test_pairs_are_neighbors_and_what_overlaps():
     assert ("root", "hand") not in pairs
     near = robot(links, [*joints[:1], ("b", "revolute", "stiff", "arm"), joints[2]])
     assert ignored_pairs(near, {})["stiff", "hand"] == "Default"
+
+
+def test_mimic_joints_are_said_in_a_later_version():
+    description = robot(
+        {"root": INERTIAL, "lead": INERTIAL, "follower": INERTIAL},
+        [("a", "revolute", "root", "lead"), ("b", "revolute", "root", "follower")],
+    )
+    first, second, third = description.to_text().partition('<joint name="b"')
+    text = first + second + third.replace("<axis", '<mimic joint="a" multiplier="2" offset="0.5"/><axis')
+    root = ET.fromstring(sdf_text(RobotDescription.from_text(text), dyn.FlightSettings(), {}))
+    assert root.get("version") == "1.11"
+    (mimic,) = root.iter("mimic")
+    assert mimic.get("joint") == "a"
+    assert [float(mimic.find(key).text) for key in ("multiplier", "offset", "reference")] == [2.0, 0.5, 0.0]
