@@ -10,7 +10,7 @@
 #include <map>
 #include <mutex>
 
-#include "dynamics/urdf_bodies.hpp"
+#include "dynamics/urdf/bodies.hpp"
 #include "dynamics/urdf_text.hpp"
 #include "errors.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "dynamics/spatial.hpp"
-#include "dynamics/urdf_rules.hpp"
+#include "dynamics/urdf/rules.hpp"
 #include "dynamics/urdf_tree.hpp"
 #include "errors.hpp"
 

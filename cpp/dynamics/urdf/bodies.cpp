@@ -1,4 +1,4 @@
-#include "dynamics/urdf_bodies.hpp"
+#include "dynamics/urdf/bodies.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 #include "dynamics/model.hpp"
 
-// What the masses of a URDF must fulfil, link by link and lumped into the bodies that move.
+// What the masses of a URDF must fulfill, link by link and lumped into the bodies that move.
 namespace codesign::dynamics {
 
 // A name or a number of a file in a message: short, without control characters; the same in every
