@@ -55,7 +55,6 @@ class Controllability:
 
 def controllability(model: dyn.Model, settings: dyn.FlightSettings) -> Controllability:
     """Judges a robot and its actuators at the start posture of a flight. Raises: ValueError: a frame is unknown."""
-    settings = dyn.fitted_settings(model, settings)
     jets = _jets(model, settings)
     com = dyn.center_of_mass(model, settings.base_pose, settings.initial_joints)
     weight = np.array([0.0, 0.0, model.total_mass * GRAVITY, 0.0, 0.0, 0.0])
@@ -84,7 +83,8 @@ def study_controllability(study: StudyData, design: Design) -> Controllability:
     config = study.configured(design)
     settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
     robot = chain.build_robot(study, design).to_text()
-    return controllability(dyn.load_urdf(robot, joints=joint_names(config.flown)), settings)
+    model = dyn.load_urdf(robot, joints=joint_names(config.flown))
+    return controllability(model, dyn.fitted_settings(model, settings))
 
 
 def grounded(study: StudyData) -> str | None:
