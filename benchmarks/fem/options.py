@@ -13,8 +13,9 @@ from typing import Any
 import codesign
 from codesign import _core, fem
 from codesign.chain.chain import stress_settings
-from codesign.parts.load_case import StressSettings, confirm, part_case, part_document
+from codesign.parts.load_case import StressSettings, part_case
 from codesign.parts.part import Part
+from codesign.parts.strength import confirm, part_document
 
 DESIGNS = (
     {"angle": 15, "distance": 42, "offset": 80, "length": 108},

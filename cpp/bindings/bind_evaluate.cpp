@@ -60,6 +60,7 @@ void bind_evaluate(py::module_& m) {
       .def_readwrite("tolerance", &fem::PartCase::tolerance, "relative, of the peak stress")
       .def_readwrite("max_refinements", &fem::PartCase::max_refinements, "0: one pass")
       .def_readwrite("varying", &fem::PartCase::varying, "VaryingCase")
+      .def_readwrite("masses", &fem::PartCase::masses, "RemoteMass")
       .def_readwrite("modes", &fem::PartCase::modes, "natural frequencies wanted")
       .def_readwrite("buckling", &fem::PartCase::buckling, "buckling factors wanted");
   py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")

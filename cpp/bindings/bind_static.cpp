@@ -82,6 +82,8 @@ void bind_supports_and_loads(py::module_& m) {
   py::class_<Traction>(m, "Traction")
       .def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "traction"_a);
   py::class_<Pressure>(m, "Pressure").def(py::init<Selection, double>(), "where"_a, "pressure"_a);
+  py::class_<BearingLoad>(m, "BearingLoad")
+      .def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "force"_a);
   py::class_<Disc>(m, "Disc").def(py::init<Eigen::Vector3d, Eigen::Vector3d, double>(), "center"_a,
                                   "axis"_a, "radius"_a);
   py::class_<AffineTraction>(m, "AffineTraction")
@@ -97,6 +99,14 @@ void bind_supports_and_loads(py::module_& m) {
   py::class_<BodyForce>(m, "BodyForce").def(py::init<Points>(), "force"_a);
   m.def("load_vector", &load_vector, "mesh"_a, "material"_a, "loads"_a,
         py::call_guard<py::gil_scoped_release>());
+}
+
+void bind_masses(py::module_& m) {
+  py::class_<RemoteMass>(m, "RemoteMass", "A rigid body that is carried by faces of a part.")
+      .def(py::init<Selection, double, Eigen::Vector3d, Eigen::Matrix3d, std::optional<Disc>>(),
+           "where"_a, "mass"_a, "position"_a, "inertia"_a, "region"_a = std::nullopt)
+      .def_readonly("mass", &RemoteMass::mass)
+      .def_readonly("position", &RemoteMass::position);
 }
 
 void bind_result(py::module_& m) {
@@ -180,11 +190,13 @@ void bind_result(py::module_& m) {
            "Largest von Mises stress over a history (instants, units) of the units' factors.")
       .def("at", &UnitResponses::at, "factors"_a, py::call_guard<py::gil_scoped_release>(),
            "StaticResult of one instant, factors (units,).")
-      .def("stress_at", &UnitResponses::stress_at, "node"_a, "history"_a,
-           "(instants, 6) recovered stress at a node, Pa: xx yy zz xy yz zx");
+      .def_property_readonly("stress", &UnitResponses::stress,
+                             "(n, 6 units) Pa at the nodes: xx yy zz xy yz zx of each unit load");
   py::class_<StaticSystem>(m, "StaticSystem", "A model factorized once for many load cases.")
-      .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings>(), "mesh"_a,
-           "material"_a, "supports"_a, "settings"_a, py::call_guard<py::gil_scoped_release>())
+      .def(py::init<TetMesh, Material, std::vector<Support>, StaticSettings,
+                    std::vector<RemoteMass>>(),
+           "mesh"_a, "material"_a, "supports"_a, "settings"_a,
+           "masses"_a = std::vector<RemoteMass>{}, py::call_guard<py::gil_scoped_release>())
       .def("solve", &StaticSystem::solve, "loads"_a, py::call_guard<py::gil_scoped_release>())
       .def("unit_responses", &StaticSystem::unit_responses, "units"_a,
            py::call_guard<py::gil_scoped_release>())
@@ -195,7 +207,8 @@ void bind_result(py::module_& m) {
       .def("buckling_modes", &StaticSystem::buckling_modes, "displacement"_a, "count"_a,
            py::call_guard<py::gil_scoped_release>());
   m.def("natural_modes", &natural_modes, "mesh"_a, "material"_a, "supports"_a, "count"_a,
-        "memory_limit"_a = kMemoryLimit, py::call_guard<py::gil_scoped_release>());
+        "memory_limit"_a = kMemoryLimit, "masses"_a = std::vector<RemoteMass>{},
+        py::call_guard<py::gil_scoped_release>());
 }
 
 }  // namespace
@@ -204,6 +217,7 @@ void bind_static(py::module_& m) {
   bind_material(m);
   bind_selection(m);
   bind_supports_and_loads(m);
+  bind_masses(m);
   bind_result(m);
 }
 

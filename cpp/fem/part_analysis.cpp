@@ -127,11 +127,21 @@ Eigen::VectorXd least_factors(const CaseFactors& factors, int count) {
   return least;
 }
 
+// Load cases that one factor serves; of a part without varying ones as if there were one, so that
+// its solver does not depend on their number.
+int solutions(const PartCase& part) {
+  std::size_t count = part.varying.empty() ? 1 : part.cases.size();
+  for (const VaryingCase& varying : part.varying) count += varying.units.size();
+  return static_cast<int>(count);
+}
+
 // The factor of the symmetric motions gives way to that of the antisymmetric ones.
 void solve(const PartCase& part, PartAnalysis& analysis) {
   CaseFactors factors;
   {
-    const StaticSystem system(analysis.mesh, part.material, part.supports, part.settings);
+    StaticSettings settings = part.settings;
+    settings.solutions = solutions(part);
+    const StaticSystem system(analysis.mesh, part.material, part.supports, settings, part.masses);
     solve_cases(part, system, analysis);
     for (const VaryingCase& varying : part.varying) {
       analysis.responses.push_back(system.unit_responses(varying.units));
@@ -188,6 +198,10 @@ PartAnalysis analyze_part(const PartCase& part) {
     if (!(load_case.least_safety_factor > 0)) {
       throw std::invalid_argument("least_safety_factor must be > 0");
     }
+  }
+  if (!part.masses.empty() && part.settings.copies > 1) {
+    throw std::invalid_argument(
+        "masses: a half model takes no remote masses, analyze the whole part");
   }
   PartAnalysis analysis;
   analysis.size = part.size;

@@ -37,6 +37,7 @@ struct PartCase {
   std::vector<Support> supports;
   std::vector<LoadCase> cases;
   std::vector<VaryingCase> varying;
+  std::vector<RemoteMass> masses;
   StaticSettings settings;
   double tolerance = 0.05;  // wanted relative error of the peak stress, and so of the safety factor
   int max_refinements = 0;  // local refinements around the peak allowed to reach it; 0: one pass

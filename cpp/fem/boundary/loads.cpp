@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "fem/boundary/bearing.hpp"
 #include "fem/mesh/tet10.hpp"
 #include "model_error.hpp"
 
@@ -77,6 +78,17 @@ struct LoadAdder {
     integrate_faces(mesh, selected_triangles(mesh, load.where), triangle_rule_12(),
                     [&](int t, const FacePoint& p, double weight) {
                       spread(mesh, t, p, -load.pressure * weight * p.area, f);
+                    });
+  }
+
+  void operator()(const BearingLoad& load) const {
+    require_finite(load.force.allFinite(), "bearing load");
+    const std::vector<int> triangles = selected_triangles(mesh, load.where);
+    const Eigen::Vector3d c = bearing_pressure(mesh, triangles, load.force);
+    integrate_faces(mesh, triangles, triangle_rule_12(),
+                    [&](int t, const FacePoint& p, double weight) {
+                      const double pressure = std::max(0.0, -p.area.normalized().dot(c));
+                      spread(mesh, t, p, -pressure * weight * p.area, f);
                     });
   }
 

@@ -30,6 +30,12 @@ struct Pressure {
   double pressure = 0.0;
 };
 
+// A total force (N) by pressure alone, as a pin presses on a bore: see bearing.hpp.
+struct BearingLoad {
+  Selection where;
+  Eigen::Vector3d force;
+};
+
 // Points within radius (m) of the line through center along axis.
 struct Disc {
   Eigen::Vector3d center;
@@ -62,7 +68,8 @@ struct BodyForce {
   Points force;
 };
 
-using Load = std::variant<Force, Traction, Pressure, AffineTraction, Acceleration, BodyForce>;
+using Load =
+    std::variant<Force, Traction, Pressure, BearingLoad, AffineTraction, Acceleration, BodyForce>;
 
 // Consistent nodal forces (N), x y z of node 0, then node 1 ... Surface loads are integrated over
 // the true, curved face.

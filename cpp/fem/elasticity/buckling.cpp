@@ -126,7 +126,8 @@ BucklingModes buckling_of_factor(const TetMesh& mesh, const Material& material,
     const auto apply = [&](const Eigen::MatrixXd& v, const Eigen::MatrixXd&) -> Eigen::MatrixXd {
       return -factor.solve(multiply_columns(geometric, v));
     };
-    return extreme_eigenpairs(stiffness, apply, factor.solve(random_block(n, block)), wanted);
+    const auto inner = [&](const Eigen::VectorXd& x) { return multiply(stiffness, x); };
+    return extreme_eigenpairs(inner, apply, factor.solve(random_block(n, block)), wanted);
   };
   return find_modes(mesh, material, pattern, displacement, count, eigenpairs);
 }

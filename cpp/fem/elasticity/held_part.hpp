@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fem/boundary/remote_mass.hpp"
 #include "fem/boundary/supports.hpp"
 #include "fem/elasticity/static_solver.hpp"
 #include "fem/mesh/material.hpp"
@@ -16,6 +17,7 @@ struct HeldPart {
   TetMesh mesh;
   Material material;
   std::vector<Support> supports;
+  std::vector<RemoteMass> masses;
   StaticSettings settings;
   Constraints constraints;
   std::vector<int> clamped;  // boundary triangles

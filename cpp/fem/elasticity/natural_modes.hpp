@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "fem/boundary/remote_mass.hpp"
 #include "fem/boundary/supports.hpp"
 #include "fem/elasticity/memory.hpp"
 #include "fem/elasticity/stiffness.hpp"
@@ -25,19 +26,26 @@ struct NaturalModes {
 
 // The lowest modes of a part on its supports (prescribed displacements count as held), or free:
 // then the rigid motions come first. By a factor if it fits into the memory limit (bytes), else by
-// iteration. Throws SolverError, MemoryLimitError, MeshError; std::invalid_argument if the material
-// has no density or count < 1.
+// iteration. Throws SolverError, MemoryLimitError, MeshError, ModelError: a free part with remote
+// masses; std::invalid_argument if the material has no density or count < 1.
 NaturalModes natural_modes(const TetMesh& mesh, const Material& material,
                            const std::vector<Support>& supports, int count,
-                           double memory_limit = kMemoryLimit);
+                           double memory_limit = kMemoryLimit,
+                           const std::vector<RemoteMass>& masses = {});
 
-// The same from a factor of K + shift M, by the largest eigenvalues of (K + shift M)⁻¹ M.
+// (equations, 6 masses) the free rows of mass_columns; no column without masses.
+Eigen::MatrixXd carried_columns(const TetMesh& mesh, const NodePattern& pattern,
+                                const std::vector<RemoteMass>& masses);
+
+// The same, carried carriedᵀ added to the mass matrix, from a factor of K + shift M, by the largest
+// eigenvalues of (K + shift M)⁻¹ M.
 NaturalModes modes_of_factor(const NodePattern& pattern, const LowerMatrix& mass,
-                             const CholeskyFactor& factor, double shift, int count);
+                             const Eigen::MatrixXd& carried, const CholeskyFactor& factor,
+                             double shift, int count);
 
 // The same without a factor, from `stiffness`, K + shift M, and its preconditioner.
 NaturalModes modes_by_iteration(const NodePattern& pattern, const LowerMatrix& nodal_mass,
-                                const LowerMatrix& stiffness,
+                                const Eigen::MatrixXd& carried, const LowerMatrix& stiffness,
                                 const TwoLevelPreconditioner& preconditioner, double shift,
                                 int count);
 

@@ -41,12 +41,13 @@ void check_settings(const StaticSettings& s) {
     throw std::invalid_argument("exclusion_distance must be >= 0");
   if (!(s.stress_volume > 0)) throw std::invalid_argument("stress_volume must be > 0");
   if (s.copies < 1) throw std::invalid_argument("copies must be >= 1");
+  if (s.solutions < 1) throw std::invalid_argument("solutions must be >= 1");
   if (!(s.residual_tolerance > 0)) throw std::invalid_argument("residual_tolerance must be > 0");
 }
 
 bool solves_directly(const NodePattern& pattern, const StaticSettings& settings) {
   if (settings.solver != LinearSolver::automatic) return settings.solver == LinearSolver::direct;
-  return factor_fits(pattern, settings.memory_limit, kDirectOperations);
+  return factor_fits(pattern, settings.memory_limit, settings.solutions * kDirectOperations);
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ struct StaticSystem::Data {
   Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal, double& residual,
                            int& iterations) const {
     Eigen::VectorXd u = part->constraints.displacement;
-    internal = internal_forces(part->mesh, part->material, u).sum;
+    internal = u.isZero(0.0) ? u : internal_forces(part->mesh, part->material, u).sum;
     residual = 0.0;
     if (pattern.equations() == 0) return u;
     if (load.isZero(0.0) && internal.isZero(0.0)) return u;
@@ -136,16 +137,18 @@ struct StaticSystem::Data {
 };
 
 StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
-                           StaticSettings settings)
+                           StaticSettings settings, std::vector<RemoteMass> masses)
     : data_(std::make_unique<Data>()) {
   check_mesh(mesh);
   check_material(material);
   check_settings(settings);
+  check_masses(masses);
   Data& d = *data_;
   auto held = std::make_shared<HeldPart>();
   held->mesh = std::move(mesh);
   held->material = std::move(material);
   held->supports = std::move(supports);
+  held->masses = std::move(masses);
   held->settings = settings;
   held->constraints = constrain(held->mesh, held->supports);
   require_held(held->mesh, held->constraints);
@@ -173,9 +176,10 @@ StaticSystem& StaticSystem::operator=(StaticSystem&&) noexcept = default;
 
 const TetMesh& StaticSystem::mesh() const { return data_->part->mesh; }
 
-StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
+StaticResult StaticSystem::solve(const std::vector<Load>& given) const {
   const Data& d = *data_;
   const HeldPart& part = *d.part;
+  const std::vector<Load> loads = with_masses(given, part.masses);
   const Eigen::VectorXd load = load_vector(part.mesh, part.material, loads);
   d.require_effect(loads, load);
   Eigen::VectorXd internal;
@@ -212,22 +216,24 @@ UnitResponses StaticSystem::unit_responses(const std::vector<std::vector<Load>>&
 
 NaturalModes StaticSystem::natural_modes(int count) const {
   const Data& d = *data_;
+  const HeldPart& part = *d.part;
   if (d.refactors()) {
-    return codesign::fem::natural_modes(d.part->mesh, d.part->material, d.part->supports, count,
-                                        d.part->settings.memory_limit);
+    return codesign::fem::natural_modes(part.mesh, part.material, part.supports, count,
+                                        part.settings.memory_limit, part.masses);
   }
-  if (!(d.part->material.density > 0)) throw std::invalid_argument("modes need a density above 0");
+  if (!(part.material.density > 0)) throw std::invalid_argument("modes need a density above 0");
+  const Eigen::MatrixXd carried = carried_columns(part.mesh, d.pattern, part.masses);
   if (!d.factor) {
-    return modes_by_iteration(d.pattern,
-                              assemble_nodal_mass(d.part->mesh, d.part->material, d.pattern),
-                              d.stiffness, *d.preconditioner, 0.0, count);
+    return modes_by_iteration(d.pattern, assemble_nodal_mass(part.mesh, part.material, d.pattern),
+                              carried, d.stiffness, *d.preconditioner, 0.0, count);
   }
-  return modes_of_factor(d.pattern, assemble_mass(d.part->mesh, d.part->material, d.pattern),
+  return modes_of_factor(d.pattern, assemble_mass(part.mesh, part.material, d.pattern), carried,
                          *d.factor, 0.0, count);
 }
 
-Points StaticSystem::displacement(const std::vector<Load>& loads) const {
+Points StaticSystem::displacement(const std::vector<Load>& given) const {
   const Data& d = *data_;
+  const std::vector<Load> loads = with_masses(given, d.part->masses);
   const Eigen::VectorXd load = load_vector(d.part->mesh, d.part->material, loads);
   d.require_effect(loads, load);
   Eigen::VectorXd internal;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fem/boundary/loads.hpp"
+#include "fem/boundary/remote_mass.hpp"
 #include "fem/boundary/supports.hpp"
 #include "fem/elasticity/buckling.hpp"
 #include "fem/elasticity/memory.hpp"
@@ -24,7 +25,7 @@
 namespace codesign::fem {
 
 // automatic: direct unless stiffness and factor are larger than the memory limit or the factor
-// takes longer than conjugate gradients for one load case; both are known before it is computed.
+// takes longer than conjugate gradients for all load cases; both are known before it is computed.
 enum class LinearSolver { automatic, direct, iterative };
 
 struct StaticSettings {
@@ -35,6 +36,7 @@ struct StaticSettings {
   double residual_tolerance = 1e-9;  // relative
   LinearSolver solver = LinearSolver::automatic;
   double memory_limit = kMemoryLimit;  // bytes for matrices and factors
+  int solutions = 1;                   // load cases that will be solved, for the automatic choice
 };
 
 struct StaticModel {
@@ -86,10 +88,11 @@ class UnitResponses;
 // A model ordered, assembled and factorized once, for any number of load cases.
 class StaticSystem {
  public:
+  // masses: what faces of the part carry; accelerations pull at them and they count in the modes.
   // Throws SolverError naming the free rigid motions if the supports do not hold the part,
   // MemoryLimitError if no solver fits into the memory limit, and MeshError for inverted elements.
   StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
-               StaticSettings settings = {});
+               StaticSettings settings = {}, std::vector<RemoteMass> masses = {});
   ~StaticSystem();
   StaticSystem(StaticSystem&&) noexcept;
   StaticSystem& operator=(StaticSystem&&) noexcept;
@@ -98,8 +101,9 @@ class StaticSystem {
   // or a load acts on held components only.
   StaticResult solve(const std::vector<Load>& loads) const;
 
-  // The answers to unit loads (any number of loads each), see unit_responses.hpp; a load of nothing
-  // is no error here. Throws SolverError as solve does, ModelError if a support is moved.
+  // The answers to unit loads (any number of loads each), see unit_responses.hpp; remote masses are
+  // not in them, and a load of nothing is no error here. Throws SolverError as solve does,
+  // ModelError if a support is moved.
   UnitResponses unit_responses(const std::vector<std::vector<Load>>& units) const;
 
   // The lowest modes on the supports, from the same factor if there is one. Throws SolverError,

@@ -47,13 +47,4 @@ StaticResult UnitResponses::at(const Eigen::VectorXd& factors) const {
   return read_result(*part_, loaded_, load, internal, u);
 }
 
-LoadHistory UnitResponses::stress_at(int node, const LoadHistory& history) const {
-  if (node < 0 || node >= stress_.rows()) throw std::invalid_argument("no such node");
-  if (history.cols() != units()) {
-    throw std::invalid_argument("a history needs " + std::to_string(units()) + " columns");
-  }
-  const Eigen::Map<const Eigen::MatrixXd> unit(stress_.row(node).data(), 6, units());
-  return history * unit.transpose();
-}
-
 }  // namespace codesign::fem

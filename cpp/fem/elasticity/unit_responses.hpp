@@ -25,15 +25,16 @@ class UnitResponses {
   Eigen::Index units() const { return displacement_.cols(); }
   const TetMesh& mesh() const;
 
+  // (n, 6 units) recovered stress at the nodes, Pa: xx yy zz xy yz zx of the first unit load, then
+  // of the next.
+  const StressFields& stress() const { return stress_; }
+
   // The largest von Mises stress over the instants (rows) of a history of the unit loads' factors.
   // Throws ModelError if the exclusion leaves no place, std::invalid_argument for a wrong size.
   HistoryPeak peak(const LoadHistory& history) const;
 
   // All that one instant gives, as a solution with its loads would. factors: (units).
   StaticResult at(const Eigen::VectorXd& factors) const;
-
-  // (instants, 6) recovered stress at a node over a history, Pa.
-  LoadHistory stress_at(int node, const LoadHistory& history) const;
 
  private:
   std::shared_ptr<const HeldPart> part_;

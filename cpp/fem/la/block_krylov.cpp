@@ -18,18 +18,18 @@ constexpr int kMaxBlocks = 40;
 
 // Vectors that are orthonormal in the inner product of a matrix, with their products with it.
 struct Basis {
-  const LowerMatrix& inner;
+  const LinearMap& inner;
   Eigen::MatrixXd v, mv;
   Eigen::Index size = 0;
 
   // Adds what a vector holds beyond the basis; nothing if that is rounding.
   void add(Eigen::VectorXd x) {
-    const double before = std::sqrt(std::abs(x.dot(multiply(inner, x))));
+    const double before = std::sqrt(std::abs(x.dot(inner(x))));
     for (int pass = 0; pass < 2; ++pass) {
       const Eigen::VectorXd along = mv.leftCols(size).transpose() * x;
       x.noalias() -= v.leftCols(size) * along;
     }
-    const Eigen::VectorXd mx = multiply(inner, x);
+    const Eigen::VectorXd mx = inner(x);
     const double norm = std::sqrt(std::abs(x.dot(mx)));
     if (!(norm > 1e-10 * before)) return;
     if (size == v.cols()) {
@@ -75,7 +75,7 @@ Eigen::MatrixXd random_block(Eigen::Index rows, Eigen::Index columns) {
   return block;
 }
 
-Eigenpairs extreme_eigenpairs(const LowerMatrix& inner, const SelfAdjoint& apply,
+Eigenpairs extreme_eigenpairs(const LinearMap& inner, const SelfAdjoint& apply,
                               Eigen::MatrixXd start, const WantedEigenvalues& wanted) {
   const Eigen::Index n = start.rows(), capacity = 6 * start.cols();
   const Eigen::Index top = wanted.largest, bottom = wanted.smallest;

@@ -3,9 +3,10 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "fem/la/lower_matrix.hpp"
-
 namespace codesign::fem {
+
+// A x for a symmetric matrix A that need not be stored.
+using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd& x)>;
 
 // A times the columns of v, for an operator A that is self-adjoint in the inner product of a
 // positive definite matrix M: vᵀ M A w = wᵀ M A v. The columns of mv are M v.
@@ -34,7 +35,7 @@ struct Eigenpairs {
 // the wanted eigenvalues have converged.
 // inner: M. start: a block of vectors, smooth ones for elliptic problems. Throws SolverError if the
 // eigenvalues do not converge.
-Eigenpairs extreme_eigenpairs(const LowerMatrix& inner, const SelfAdjoint& apply,
+Eigenpairs extreme_eigenpairs(const LinearMap& inner, const SelfAdjoint& apply,
                               Eigen::MatrixXd start, const WantedEigenvalues& wanted);
 
 // Numbers between -1 and 1, the same on every machine: a block to start from.

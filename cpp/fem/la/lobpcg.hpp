@@ -1,14 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 
 #include "fem/la/block_krylov.hpp"
 
 namespace codesign::fem {
-
-// A x for a symmetric matrix A that need not be stored.
-using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd& x)>;
 
 // A x = value B x: A symmetric, B positive definite. `precondition` is about the inverse of A - s B
 // for some s below the least eigenvalue; of its quality depends how many rounds it takes, not what

@@ -25,10 +25,10 @@ struct HistoryPeak {
 // element too. `units` holds the recovered stress of the unit loads at the nodes, six columns each.
 //
 // The result is that of a search of all pairs of a place and an instant: von Mises stress is
-// convex, so over a face or an element and over a block of instants it is bounded by its values at
-// the control points for one instant, plus the unit stresses there times the largest change of the
-// factors within the block. Only what the bound does not rule out is computed. Throws ModelError if
-// the zone leaves no point, std::invalid_argument if sizes differ.
+// convex, so over a face or an element and a block of instants it is bounded by its values at the
+// control points for the first and the last instant, plus the unit stresses there times the largest
+// distance of the factors from the chord between the two. Only what the bound does not rule out is
+// computed. Throws ModelError if the zone leaves no point, std::invalid_argument if sizes differ.
 HistoryPeak history_peak(const TetMesh& mesh, const StressFields& units, const LoadHistory& history,
                          const ExclusionZone& zone, bool inside);
 

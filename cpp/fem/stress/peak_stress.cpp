@@ -31,23 +31,6 @@ double upper_bound(const FaceStress& s) {
   return bound;
 }
 
-struct Sample {
-  Eigen::Vector2d reference;
-  Eigen::Matrix<double, 6, 1> values;
-};
-
-std::vector<Sample> lattice() {
-  std::vector<Sample> samples;
-  for (int i = 0; i <= kLattice; ++i) {
-    for (int j = 0; i + j <= kLattice; ++j) {
-      const Eigen::Vector2d xi(static_cast<double>(i) / kLattice,
-                               static_cast<double>(j) / kLattice);
-      samples.push_back({xi, tri6_values(xi)});
-    }
-  }
-  return samples;
-}
-
 // Boundary triangles by the upper bound of their stress, largest first.
 std::vector<std::pair<double, int>> by_bound(const TetMesh& mesh, const Stresses& nodal) {
   std::vector<std::pair<double, int>> faces;
@@ -91,21 +74,40 @@ double largest_error_around(const TetMesh& mesh, const RecoveryError& recovery,
 
 }  // namespace
 
-void raise_on_face(const TetMesh& mesh, const FaceStress& stress, int triangle,
-                   const ExclusionZone& zone, bool left_out, PeakStress& peak) {
-  static const std::vector<Sample> samples = lattice();
+const std::vector<FaceSample>& face_samples() {
+  static const std::vector<FaceSample> samples = [] {
+    std::vector<FaceSample> lattice;
+    for (int i = 0; i <= kLattice; ++i) {
+      for (int j = 0; i + j <= kLattice; ++j) {
+        const Eigen::Vector2d xi(static_cast<double>(i) / kLattice,
+                                 static_cast<double>(j) / kLattice);
+        lattice.push_back({xi, tri6_values(xi)});
+      }
+    }
+    return lattice;
+  }();
+  return samples;
+}
+
+Side side_of_face(const TetMesh& mesh, int triangle, const ExclusionZone& zone) {
+  if (zone.skips(triangle)) return Side::inside;
   const FaceNodes x = face_nodes(mesh, triangle);
   const Eigen::Vector3d center = x.leftCols<3>().rowwise().mean();
   const double radius = (x.colwise() - center).colwise().norm().maxCoeff();
-  // A face that lies on one side as a whole needs no look at its points.
-  const bool all_in = zone.skips(triangle) || zone.contains_ball(center, radius);
-  const bool none_in = !all_in && !zone.touches_ball(center, radius);
-  if (left_out ? none_in : all_in) return;
-  for (const Sample& sample : samples) {
+  if (zone.contains_ball(center, radius)) return Side::inside;
+  return zone.touches_ball(center, radius) ? Side::both : Side::outside;
+}
+
+void raise_on_face(const TetMesh& mesh, const FaceStress& stress, int triangle,
+                   const ExclusionZone& zone, bool left_out, PeakStress& peak) {
+  const Side side = side_of_face(mesh, triangle, zone);
+  if (side == (left_out ? Side::outside : Side::inside)) return;
+  const FaceNodes x = face_nodes(mesh, triangle);
+  for (const FaceSample& sample : face_samples()) {
     const double value = von_mises(Voigt(stress * sample.values));
     if (peak.read() && value <= peak.value) continue;
     const Eigen::Vector3d position = x * sample.values;
-    const bool inside = all_in || (!none_in && zone.contains(position));
+    const bool inside = side == Side::inside || (side == Side::both && zone.contains(position));
     if (inside == left_out) peak = {value, position, triangle, -1, sample.reference};
   }
 }

@@ -25,6 +25,18 @@ struct PeakStress {
 using FaceStress = Eigen::Matrix<double, 6, 6>;
 using ElementStress = Eigen::Matrix<double, 6, kTetNodes>;
 
+// Where a boundary face is sampled: 66 points with the values of its shape functions there.
+struct FaceSample {
+  Eigen::Vector2d reference;
+  Eigen::Matrix<double, 6, 1> values;
+};
+const std::vector<FaceSample>& face_samples();
+
+// How a face lies to what is left out; a face that lies on one side as a whole needs no look at its
+// points.
+enum class Side { outside, inside, both };
+Side side_of_face(const TetMesh& mesh, int triangle, const ExclusionZone& zone);
+
 // Raises a peak to the largest sample of one face outside the zone (left_out: inside it), and of
 // the four points of an element outside it, where these are above.
 void raise_on_face(const TetMesh& mesh, const FaceStress& stress, int triangle,

@@ -34,7 +34,13 @@ class LoadCase:
         self,
         name: str,
         loads: collections.abc.Sequence[
-            fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce
+            fem.Force
+            | fem.Traction
+            | fem.Pressure
+            | fem.BearingLoad
+            | fem.AffineTraction
+            | fem.Acceleration
+            | fem.BodyForce
         ],
         least_safety_factor: typing.SupportsFloat | typing.SupportsIndex = 1.0,
     ) -> None: ...
@@ -43,7 +49,15 @@ class LoadCase:
     @property
     def loads(
         self,
-    ) -> list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]: ...
+    ) -> list[
+        fem.Force
+        | fem.Traction
+        | fem.Pressure
+        | fem.BearingLoad
+        | fem.AffineTraction
+        | fem.Acceleration
+        | fem.BodyForce
+    ]: ...
     @property
     def name(self) -> str: ...
 
@@ -56,7 +70,13 @@ class VaryingCase:
         name: str,
         units: collections.abc.Sequence[
             collections.abc.Sequence[
-                fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce
+                fem.Force
+                | fem.Traction
+                | fem.Pressure
+                | fem.BearingLoad
+                | fem.AffineTraction
+                | fem.Acceleration
+                | fem.BodyForce
             ]
         ],
     ) -> None: ...
@@ -66,7 +86,15 @@ class VaryingCase:
     def units(
         self,
     ) -> list[
-        list[fem.Force | fem.Traction | fem.Pressure | fem.AffineTraction | fem.Acceleration | fem.BodyForce]
+        list[
+            fem.Force
+            | fem.Traction
+            | fem.Pressure
+            | fem.BearingLoad
+            | fem.AffineTraction
+            | fem.Acceleration
+            | fem.BodyForce
+        ]
     ]: ...
 
 class PartCase:
@@ -97,6 +125,13 @@ class PartCase:
     def buckling(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     @property
     def cases(self) -> list[LoadCase]: ...
+    @property
+    def masses(self) -> list[fem.RemoteMass]:
+        """
+        RemoteMass
+        """
+    @masses.setter
+    def masses(self, arg0: collections.abc.Sequence[fem.RemoteMass]) -> None: ...
     @property
     def material(self) -> fem.Material: ...
     @property

@@ -12,6 +12,7 @@ import typing
 __all__: list[str] = [
     "Acceleration",
     "AffineTraction",
+    "BearingLoad",
     "BodyForce",
     "BucklingModes",
     "Disc",
@@ -27,6 +28,7 @@ __all__: list[str] = [
     "MeshReport",
     "NaturalModes",
     "Pressure",
+    "RemoteMass",
     "Selection",
     "SizeField",
     "SizeSource",
@@ -451,6 +453,11 @@ class Traction:
 class Pressure:
     def __init__(self, where: Selection, pressure: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
+class BearingLoad:
+    def __init__(
+        self, where: Selection, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> None: ...
+
 class Disc:
     def __init__(
         self,
@@ -483,6 +490,23 @@ class Acceleration:
 
 class BodyForce:
     def __init__(self, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]) -> None: ...
+
+class RemoteMass:
+    """
+    A rigid body that is carried by faces of a part.
+    """
+    def __init__(
+        self,
+        where: Selection,
+        mass: typing.SupportsFloat | typing.SupportsIndex,
+        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"],
+        region: Disc | None = None,
+    ) -> None: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
 
 class LinearSolver:
     """
@@ -800,16 +824,13 @@ class UnitResponses:
         """
         Largest von Mises stress over a history (instants, units) of the units' factors.
         """
-    def stress_at(
-        self,
-        node: typing.SupportsInt | typing.SupportsIndex,
-        history: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        (instants, 6) recovered stress at a node, Pa: xx yy zz xy yz zx
-        """
     @property
     def mesh(self) -> TetMesh: ...
+    @property
+    def stress(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, 6 units) Pa at the nodes: xx yy zz xy yz zx of each unit load
+        """
     @property
     def units(self) -> int:
         """
@@ -821,7 +842,12 @@ class StaticSystem:
     A model factorized once for many load cases.
     """
     def __init__(
-        self, mesh: TetMesh, material: Material, supports: collections.abc.Sequence[Support], settings: StaticSettings
+        self,
+        mesh: TetMesh,
+        material: Material,
+        supports: collections.abc.Sequence[Support],
+        settings: StaticSettings,
+        masses: collections.abc.Sequence[RemoteMass] = [],
     ) -> None: ...
     def buckling_modes(
         self,
@@ -829,19 +855,27 @@ class StaticSystem:
         count: typing.SupportsInt | typing.SupportsIndex,
     ) -> BucklingModes: ...
     def displacement(
-        self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
+        self,
+        loads: collections.abc.Sequence[
+            Force | Traction | Pressure | BearingLoad | AffineTraction | Acceleration | BodyForce
+        ],
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
         """
         (n, 3) m, of one load case
         """
     def natural_modes(self, count: typing.SupportsInt | typing.SupportsIndex) -> NaturalModes: ...
     def solve(
-        self, loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
+        self,
+        loads: collections.abc.Sequence[
+            Force | Traction | Pressure | BearingLoad | AffineTraction | Acceleration | BodyForce
+        ],
     ) -> StaticResult: ...
     def unit_responses(
         self,
         units: collections.abc.Sequence[
-            collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce]
+            collections.abc.Sequence[
+                Force | Traction | Pressure | BearingLoad | AffineTraction | Acceleration | BodyForce
+            ]
         ],
     ) -> UnitResponses: ...
 
@@ -918,7 +952,9 @@ def load_surface(
 def load_vector(
     mesh: TetMesh,
     material: Material,
-    loads: collections.abc.Sequence[Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce],
+    loads: collections.abc.Sequence[
+        Force | Traction | Pressure | BearingLoad | AffineTraction | Acceleration | BodyForce
+    ],
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 def mass_properties(surface: SurfaceMesh, density: typing.SupportsFloat | typing.SupportsIndex) -> MassProperties:
     """
@@ -939,6 +975,7 @@ def natural_modes(
     supports: collections.abc.Sequence[Support],
     count: typing.SupportsInt | typing.SupportsIndex,
     memory_limit: typing.SupportsFloat | typing.SupportsIndex = 4000000000.0,
+    masses: collections.abc.Sequence[RemoteMass] = [],
 ) -> NaturalModes: ...
 def nearest_triangle(
     surface: SurfaceMesh, point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]

@@ -15,19 +15,17 @@ from codesign import _core
 from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families
 from codesign.chain.flight import find_trajectory, flight_seeds, flight_settings, joint_names, refusals
+from codesign.chain.flown import decided_cases, with_flown
 from codesign.chain.judge import judge
-from codesign.chain.loads import case_settings
+from codesign.chain.loads import asked_of, carried_masses, case_settings, flown_settings
 from codesign.chain.provenance import provenance
+from codesign.chain.recent import Recent
+from codesign.chain.scatter import made, split_sample
 from codesign.errors import CodesignError
 from codesign.fem import Material
-from codesign.parts.load_case import (
-    Confirmation,
-    StressSettings,
-    confirm,
-    part_case,
-    part_document,
-)
+from codesign.parts.load_case import StressSettings, part_case
 from codesign.parts.part import Part
+from codesign.parts.strength import Confirmation, confirm, part_document
 from codesign.problem.design_space import Design, DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.robot.assembly import PartBody, assemble
@@ -40,6 +38,8 @@ from codesign.transforms import Matrix
 from codesign.units import GIGA, MEBIBYTE, MEGA, MILLIMETER
 
 CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
+# Answers of parts to unit loads, by cache key: the last of this process, since a search and its tasks repeat parts.
+_ANSWERS: Recent[list[_core.fem.UnitResponses]] = Recent(4)
 MODES = 3  # natural frequencies of a part, where a study limits the first
 
 if TYPE_CHECKING:
@@ -79,17 +79,23 @@ def evaluate_with_fields(
 
 def _check_trajectory(config: StudyConfig, trajectory: str | None) -> None:
     """Raises: StudyError: there is no such trajectory, or one is named where nothing flies."""
+    trajectory, _ = split_sample(trajectory)
     if config.flight is not None or trajectory is not None:
         find_trajectory(config, trajectory or config.flown.trajectory)
 
 
 @dataclass(frozen=True, slots=True)
 class Computed:
-    """What the native code gave: analyses of the parts that were not known, the flight for every seed, times [s]."""
+    """What the native code gave: analyses of the parts that were not known, the flight for every seed, times [s].
+
+    settings: of the flights. seeds: one for each.
+    """
 
     parts: list[_core.PartAnalysis]
     flights: list[dyn.FlightLog]
     seconds: dict[str, float]
+    settings: dyn.FlightSettings | None = None
+    seeds: tuple[int, ...] = ()
 
 
 def compute(
@@ -102,36 +108,40 @@ def compute(
     name = trajectory or config.flight.trajectory
     settings = flight_settings(config.flight, find_trajectory(config, name))
     with refusals(study.path):
-        result = _core.evaluate(cases, robot.to_text(), settings, flight_seeds(config, name))
-    return Computed(list(result.parts), list(result.flights), result.seconds)
+        seeds = flight_seeds(config, name)
+        result = _core.evaluate(cases, robot.to_text(), settings, seeds)
+    return Computed(list(result.parts), list(result.flights), result.seconds, settings, tuple(seeds))
 
 
 def _evaluate(
     study: StudyData, design: Design, trajectory: str | None, cache: PartCache | None
 ) -> tuple[Evaluation, Computed]:
     start = time.perf_counter()
-    config = study.configured(design)
-    parts = build_parts(study, design, config)
+    trajectory, sample = split_sample(trajectory)
+    config, values = study.configured(design), dict(design)
+    if sample is not None:
+        config, values = made(config, values, sample)
+    parts = build_parts(study, values, config)
     stress = {name: stress_settings(config, name) for name in parts}
     keys = {name: _part_key(study, part, stress[name]) for name, part in parts.items()}
-    known: dict[str, dict[str, Any]] = {}
-    if cache is not None:
-        found = {name: cache.get(key) for name, key in keys.items()}
-        known = {name: document for name, document in found.items() if document is not None}
+    known = _known_documents(keys, cache)
+    answers = {name: _ANSWERS[keys[name]] for name in parts if keys[name] in _ANSWERS}
     masses = {name: _mass(known[name]) if name in known else part.mass_properties() for name, part in parts.items()}
     robot = _assemble(study, config, parts, masses)
-    cases = {name: part_case(part, stress[name]) for name, part in parts.items() if name not in known}
+    wanted = [name for name in parts if name not in known or (stress[name].flown and name not in answers)]
+    cases = {name: part_case(parts[name], stress[name]) for name in wanted}
     built = time.perf_counter()
     result = compute(study, config, list(cases.values()), robot, trajectory)
-    documents: dict[str, dict[str, Any]] = {}
-    for name in parts:
-        if name in known:
-            documents[name] = known[name]
-            continue
-        analysis = result.parts[list(cases).index(name)]
+    documents = {name: known[name] for name in parts if name in known}
+    for name, analysis in zip(wanted, result.parts, strict=True):
         documents[name] = part_document(masses[name], analysis)
-        if cache is not None:
+        if stress[name].flown:
+            answers[name] = _ANSWERS.put(keys[name], list(analysis.responses))
+        if cache is not None and name not in known:
             cache.put(keys[name], documents[name])
+    documents = {name: documents[name] for name in parts}
+    if answers and result.flights and all(flight.completed for flight in result.flights):
+        documents |= _flown_strength(config, parts, robot, result, documents, answers)
     document = {"parts": documents, **_flown(config, parts, robot, result, trajectory)}
     verdict = judge(config, document, study.functions)
     evaluation = Evaluation(
@@ -147,6 +157,34 @@ def _evaluate(
         provenance=provenance(study),
     )
     return evaluation, result
+
+
+def _known_documents(keys: Mapping[str, str], cache: PartCache | None) -> dict[str, dict[str, Any]]:
+    """Documents of the parts that the cache has, without what a flight adds."""
+    found = {name: cache.get(key) for name, key in keys.items()} if cache is not None else {}
+    return {name: document for name, document in found.items() if document is not None}
+
+
+def _flown_strength(
+    config: StudyConfig,
+    parts: Mapping[str, Part],
+    robot: RobotDescription,
+    result: Computed,
+    documents: Mapping[str, dict[str, Any]],
+    answers: Mapping[str, Sequence[_core.fem.UnitResponses]],
+) -> dict[str, dict[str, Any]]:
+    """Documents of the parts with flown load cases, these included."""
+    if result.settings is None:
+        return {}
+    flights = dict(zip(result.seeds, result.flights, strict=True))
+    decided = decided_cases(config, parts, robot, result.settings, flights, answers)
+    return {
+        part.name: with_flown(
+            documents[part.name], decided[part.name], flown_settings(part, config), asked_of(part, config)
+        )
+        for part in config.parts
+        if part.name in decided
+    }
 
 
 def _flown(
@@ -195,6 +233,8 @@ def stress_settings(config: StudyConfig, part_name: str) -> StressSettings:
         ),
         supports=tuple(part.supports),
         cases=case_settings(part, config),
+        flown=flown_settings(part, config),
+        masses=carried_masses(part),
         geometry=stress.geometry,
         load=stress.load,
         support=stress.support,

@@ -15,7 +15,7 @@ from codesign.study.loading import load
 from codesign.study.study import StudyData
 
 if TYPE_CHECKING:
-    from codesign.parts.load_case import Confirmation
+    from codesign.parts.strength import Confirmation
     from codesign.problem.evaluation import Evaluation
     from codesign.problem.protocols import PartCache, Rival
 

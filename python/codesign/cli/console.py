@@ -17,8 +17,9 @@ from codesign.problem.evaluation import least_infeasible
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from codesign.parts.load_case import Confirmation
+    from codesign.parts.strength import Confirmation
     from codesign.problem.evaluation import Evaluation
+    from codesign.report.tolerances import Tolerances
     from codesign.storage.runs import Run
 
 MOST_ROWS = 20  # of a front
@@ -56,6 +57,11 @@ def print_evaluation(evaluation: Evaluation) -> None:
             f"{part['mass']:.4f} kg, SF {_factor(part, 1)}, peak {part['peak_stress'] / 1e6:.2f} MPa"
             f" (± {part['stress_error'] / 1e6:.2f}), left out {_left_out(part)}",
         )
+        for case, found in part.get("cases", {}).items():
+            if "time" in found:
+                table.add_row(
+                    "", f"{case}: SF {_factor(found, 1)} at {found['time']:.3f} s, {found['link']}{_life(found)}"
+                )
         if not part.get("peak_resolved", True):
             table.add_row("", 'peak not resolved: its error exceeds half of it; set [fem] accuracy = "fine"')
     for key in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust"):
@@ -81,10 +87,31 @@ def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
         out.print(table)
 
 
+def print_tolerances(found: Tolerances) -> None:
+    """Of every sampled design the share that is feasible, and how its numbers scatter."""
+    for made in found.designs:
+        design = "  ".join(f"{name}={value_text(value)}" for name, value in made.design.items())
+        verdict = "" if made.robust else "; not to be recommended"
+        out.print(f"{made.role}  {design}: {made.feasible} of {made.samples} samples are feasible{verdict}")
+        table = Table("", "least", "5 %", "median", "95 %", "largest", box=None, pad_edge=False)
+        for name, spread in made.numbers.items():
+            row = (spread.least, spread.low, spread.median, spread.high, spread.most)
+            table.add_row(name, *(f"{value:.5g}" for value in row))
+        out.print(table)
+        for reason in made.reasons:
+            out.print(f"  {reason}")
+
+
 def _factor(part: Mapping[str, Any], digits: int) -> str:
     """Safety factor of a part; one that is not stressed has none."""
     factor = part["safety_factor"]
     return "none (not stressed)" if factor is None else f"{factor:.{digits}f}"
+
+
+def _life(case: Mapping[str, Any]) -> str:
+    """How many flights fatigue a part, where its material has figures for that."""
+    flights = case.get("fatigue", {}).get("flights")
+    return "" if flights is None else f", fatigue after {flights:.2g} flights"
 
 
 def _left_out(part: Mapping[str, Any]) -> str:

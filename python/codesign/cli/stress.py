@@ -18,7 +18,7 @@ from codesign.cli.stress_options import StressInputError, parse_acceleration, pa
 from codesign.cli.stress_places import CaughtPlace, PlacedText, caught_places
 from codesign.errors import FileError, ModelError
 from codesign.files import check_target
-from codesign.parts.load_case import strength_document
+from codesign.parts.strength import strength_document
 from codesign.units import MILLIMETER
 
 LEFT_OUT_WARNED = 1.1  # times the peak: a stress left out that is a warning

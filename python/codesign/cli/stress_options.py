@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, cast
+from typing import Literal, cast, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,12 +59,13 @@ def parse_selection(text: str, scale: float) -> Place:
     )
 
 
-LoadKind = Literal["force", "traction", "pressure"]
+LoadKind = Literal["force", "traction", "pressure", "bearing", "moment"]
+KINDS = get_args(LoadKind)
 
 
 @dataclass(frozen=True)
 class AskedLoad:
-    """A load on a place as it was asked for, SI units: a total force, a traction, or a pressure (one value)."""
+    """A load on a place as it was asked for, SI units: force, traction, pressure (one value), bearing force, moment."""
 
     kind: LoadKind
     values: tuple[float, ...]
@@ -73,6 +74,10 @@ class AskedLoad:
         """The load on a selection."""
         if self.kind == "pressure":
             return fem.Pressure(where, self.values[0])
+        if self.kind == "bearing":
+            return fem.BearingLoad(where, self.values)
+        if self.kind == "moment":
+            return fem.AffineTraction(where, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), self.values)
         return fem.Force(where, self.values) if self.kind == "force" else fem.Traction(where, self.values)
 
     def resultant(self, area: float, normal: ArrayLike) -> NDArray[np.float64]:
@@ -80,11 +85,15 @@ class AskedLoad:
         values = np.asarray(self.values, dtype=float)
         if self.kind == "pressure":
             return np.asarray(-values[0] * area * np.asarray(normal, dtype=float))
-        return values if self.kind == "force" else values * area
+        if self.kind == "moment":
+            return np.zeros(3)
+        return values if self.kind in ("force", "bearing") else values * area
 
     def words(self) -> str:
         """For notes in files."""
-        unit, factor = ("N", 1.0) if self.kind == "force" else ("MPa", MEGA)
+        unit, factor = {"force": ("N", 1.0), "bearing": ("N", 1.0), "moment": ("N m", 1.0)}.get(
+            self.kind, ("MPa", MEGA)
+        )
         numbers = ", ".join(f"{value / factor:g}" for value in self.values)
         return f"{self.kind} {numbers if len(self.values) == 1 else f'({numbers})'} {unit}"
 
@@ -92,22 +101,23 @@ class AskedLoad:
 def parse_load(text: str, scale: float) -> tuple[Place, AskedLoad]:
     """A load spread over a selection.
 
-    `SEL: fx fy fz` (total force in N), `SEL: traction tx ty tz` (MPa) or `SEL: pressure p` (MPa, against the normal).
+    `SEL: fx fy fz` (total force in N), `SEL: traction tx ty tz` (MPa), `SEL: pressure p` (MPa, against the normal),
+    `SEL: bearing fx fy fz` (N, by the pressure of a pin on a bore) or `SEL: moment mx my mz` (N m).
 
     Raises: StressInputError.
     """
     where, _, load = text.rpartition(":")
     words = load.replace(",", " ").split()
     kind = words.pop(0) if words and words[0].isalpha() else "force"
-    if not words or ":" not in where or kind not in ("force", "traction", "pressure"):
+    if not words or ":" not in where or kind not in KINDS:
         raise StressInputError(
-            f"load {text!r}: expected 'SELECTION: fx fy fz' (N), 'SELECTION: pressure p' or 'SELECTION: traction tx ty "
-            "tz' (MPa)"
+            f"load {text!r}: expected 'SELECTION: fx fy fz' (N), or pressure p, traction tx ty tz (MPa), bearing fx "
+            "fy fz (N), moment mx my mz (N m) after the colon"
         )
     values = _numbers(",".join(words), 1 if kind == "pressure" else 3, text)
     if not any(values):
         raise StressInputError(f"load {text!r}: the {kind} is zero")
-    factor = 1.0 if kind == "force" else MEGA
+    factor = MEGA if kind in ("traction", "pressure") else 1.0
     return parse_selection(where, scale), AskedLoad(cast("LoadKind", kind), tuple(factor * value for value in values))
 
 

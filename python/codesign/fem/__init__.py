@@ -21,6 +21,7 @@ from codesign.errors import ModelError
 from codesign.fem.model import (
     Acceleration,
     AffineTraction,
+    BearingLoad,
     BodyForce,
     Disc,
     Force,
@@ -28,6 +29,7 @@ from codesign.fem.model import (
     LoadCase,
     Material,
     Pressure,
+    RemoteMass,
     Selection,
     Support,
     TetMesh,
@@ -55,6 +57,7 @@ from codesign.fem.static import (
 __all__ = [
     "Acceleration",
     "AffineTraction",
+    "BearingLoad",
     "BodyForce",
     "Buckling",
     "Disc",
@@ -68,6 +71,7 @@ __all__ = [
     "ModelError",
     "Modes",
     "Pressure",
+    "RemoteMass",
     "RepairReport",
     "Selection",
     "SizeField",

@@ -211,6 +211,21 @@ class Pressure:
 
 
 @dataclass(frozen=True)
+class BearingLoad:
+    """A total force [N] by pressure alone, as a pin presses on a bore: p = 2 F / (π r L) cos θ over the pressed half.
+
+    The force has no part along the axis of the bore; the pressure follows the normals, so no axis is asked for.
+    """
+
+    where: Where
+    force: ArrayLike
+
+    def native(self, mesh: TetMesh | None) -> _core.BearingLoad:
+        """The native value on a mesh."""
+        return _core.BearingLoad(resolve(mesh, self.where), _vector(self.force, "force"))
+
+
+@dataclass(frozen=True)
 class Disc:
     """Points within radius [m] of the line through center [m] along axis."""
 
@@ -238,10 +253,7 @@ class AffineTraction:
 
     def native(self, mesh: TetMesh | None) -> _core.AffineTraction:
         """The native value on a mesh."""
-        region = None
-        if self.region is not None:
-            disc = self.region
-            region = _core.Disc(_vector(disc.center, "center"), _vector(disc.axis, "axis"), float(disc.radius))
+        region = _native_disc(self.region)
         force, point, moment = (_vector(getattr(self, n), n) for n in ("force", "point", "moment"))
         return _core.AffineTraction(resolve(mesh, self.where), force, point, moment, region)
 
@@ -277,7 +289,36 @@ class BodyForce:
         return _core.BodyForce(np.atleast_2d(np.asarray(self.force, dtype=float)))
 
 
-Load = Force | Traction | Pressure | AffineTraction | Acceleration | BodyForce
+@dataclass(frozen=True)
+class RemoteMass:
+    """A rigid body that faces of a part carry, an engine on its seat, say: it moves with their mean rigid motion.
+
+    It stiffens nothing; accelerations pull at it, and it counts in natural frequencies.
+
+    Args:
+        where: the faces.
+        mass: [kg].
+        position: center of mass [m].
+        inertia: (3, 3) about the center of mass [kg m²].
+        region: limits the faces to their part inside a disc.
+    """
+
+    where: Where
+    mass: float
+    position: ArrayLike
+    inertia: ArrayLike = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    region: Disc | None = None
+
+    def native(self, mesh: TetMesh | None) -> _core.RemoteMass:
+        """The native value on a mesh."""
+        inertia = np.asarray(self.inertia, dtype=float)
+        if inertia.shape != (3, 3):
+            raise ValueError(f"inertia must have shape (3, 3), got {inertia.shape}")
+        place = _vector(self.position, "position")
+        return _core.RemoteMass(resolve(mesh, self.where), float(self.mass), place, inertia, _native_disc(self.region))
+
+
+Load = Force | Traction | Pressure | BearingLoad | AffineTraction | Acceleration | BodyForce
 
 
 @dataclass(frozen=True)
@@ -297,6 +338,12 @@ def native_supports(mesh: TetMesh | None, supports: Sequence[Support]) -> list[_
 def native_loads(mesh: TetMesh | None, loads: Sequence[Load]) -> list[Any]:
     """Loads as the native solver takes them."""
     return [load.native(mesh) for load in loads]
+
+
+def _native_disc(disc: Disc | None) -> _core.Disc | None:
+    if disc is None:
+        return None
+    return _core.Disc(_vector(disc.center, "center"), _vector(disc.axis, "axis"), float(disc.radius))
 
 
 def _vector(value: ArrayLike, name: str) -> NDArray[np.float64]:

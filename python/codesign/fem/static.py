@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from codesign._core import fem as _core
 from codesign._core.fem import StaticResult as StaticResult
 from codesign._core.fem import UnitResponses as UnitResponses
-from codesign.fem.model import Load, Material, Support, TetMesh, native_loads, native_supports
+from codesign.fem.model import Load, Material, RemoteMass, Support, TetMesh, native_loads, native_supports
 
 Solver = Literal["automatic", "direct", "iterative"]
 Exclusion = Literal["local", "published"]
@@ -81,6 +81,7 @@ class StaticSystem:
         solver: "direct" factorizes, "iterative" (conjugate gradients, two-level preconditioner) needs less memory;
             "automatic" takes the factor if it fits into memory_limit and is the faster way for one load case.
         memory_limit: [bytes] for matrices and factors, of modes and buckling too; decides between the solvers.
+        masses: rigid bodies that faces of the part carry.
 
     Raises:
         MemoryLimitError: no solver fits into memory_limit; the message says what it needs.
@@ -104,6 +105,7 @@ class StaticSystem:
         residual_tolerance: float = 1e-9,
         solver: Solver = "automatic",
         memory_limit: float = MEMORY_LIMIT,
+        masses: Sequence[RemoteMass] = (),
     ) -> None:
         if solver not in get_args(Solver):
             raise ValueError(f"solver = {solver!r}: must be one of {', '.join(get_args(Solver))}")
@@ -118,7 +120,9 @@ class StaticSystem:
         settings.solver = getattr(_core.LinearSolver, solver)
         settings.memory_limit = memory_limit
         self.mesh = mesh
-        self._system = _core.StaticSystem(mesh, material, native_supports(mesh, supports), settings)
+        self._system = _core.StaticSystem(
+            mesh, material, native_supports(mesh, supports), settings, [mass.native(mesh) for mass in masses]
+        )
 
     def solve(self, loads: Sequence[Load]) -> StaticResult:
         """The response to one load case."""
@@ -127,7 +131,8 @@ class StaticSystem:
     def unit_responses(self, units: Sequence[Sequence[Load]]) -> UnitResponses:
         """The answers to unit loads (each any number of loads), of which a history of loads is a sum at every instant.
 
-        `peak(history)` finds the largest stress of a history (instants, units), `at(factors)` gives one instant.
+        Remote masses are not in them. `peak(history)` finds the largest stress of a history (instants, units),
+        `at(factors)` gives one instant.
         Raises: ModelError: a support is moved.
         """
         return self._system.unit_responses([native_loads(self.mesh, loads) for loads in units])

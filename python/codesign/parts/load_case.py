@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -52,7 +51,42 @@ class PushedFace:
         return np.asarray(self.force, dtype=float)
 
 
-PartLoad = PressedFace | PushedFace | fem.Load
+@dataclass(frozen=True, slots=True)
+class InterfaceForce:
+    """A force [N] on a face, acting at a point [m], and a moment [N m] about it, all in the axes of an interface."""
+
+    face: str
+    interface: str
+    force: tuple[float, float, float]
+    point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    moment: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def placed(self, part_T_interface: Vector) -> fem.AffineTraction:
+        """The same load in part axes."""
+        R, position = part_T_interface[:3, :3], part_T_interface[:3, 3]
+        return fem.AffineTraction(self.face, R @ self.force, R @ self.point + position, R @ self.moment)
+
+
+@dataclass(frozen=True, slots=True)
+class CarriedMass:
+    """A rigid body on a face: mass [kg], center of mass [m], principal moments of inertia about it [kg m²].
+
+    In the axes of an interface, or of the part if none is named.
+    """
+
+    face: str
+    mass: float
+    position: tuple[float, float, float]
+    moments: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    interface: str = ""
+
+    def placed(self, part_T_axes: Vector) -> fem.RemoteMass:
+        """The same body in part axes."""
+        R, origin = part_T_axes[:3, :3], part_T_axes[:3, 3]
+        return fem.RemoteMass(self.face, self.mass, R @ self.position + origin, R @ np.diag(self.moments) @ R.T)
+
+
+PartLoad = PressedFace | PushedFace | InterfaceForce | fem.Load
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +99,24 @@ class CaseSettings:
 
 
 @dataclass(frozen=True, slots=True)
+class FlownCase:
+    """A load case whose loads are those of the flight. seats: (interface, face) that what hangs on it pushes on.
+
+    points: where each interface is, part axes [m]; `part_case` fills them in.
+    """
+
+    name: str
+    seats: tuple[tuple[str, str], ...]
+    safety_factor_min: float | None = None
+    points: tuple[tuple[float, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class StressSettings:
     """How a part's stress is computed; the same for all parts of a study but for supports and load cases.
 
+    flown: cases whose loads a flight gives, besides at least one of `cases`. masses: what faces carry; accelerations of
+    `cases` pull at them, flown loads have theirs from the flight.
     geometry: "simplified" or "full" (see the part). load, support: variant names that a part may offer.
     accuracy: "optimization" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
     error and its change are within the tolerance. exclusion, exclusion_distance [m]: where the peak stress is not read,
@@ -91,6 +140,8 @@ class StressSettings:
     memory_limit: float = 1400 * MEBIBYTE
     modes: int = 0
     buckling: int = 0
+    flown: Sequence[FlownCase] = ()
+    masses: Sequence[CarriedMass | fem.RemoteMass] = ()
 
     @property
     def segments(self) -> int:
@@ -99,9 +150,37 @@ class StressSettings:
 
 
 def part_case(part: Part, settings: StressSettings) -> _core.PartCase:
-    """The native case of a part: its own `stress_case` if it has one, else named faces on a uniform mesh."""
+    """The native case of a part: its own `stress_case` if it has one, else named faces on a uniform mesh.
+
+    Raises: StudyError: a load names an interface that the part does not have.
+    """
+    settings = placed(part, settings)
     own = getattr(part, "stress_case", None)
     return own(settings) if own is not None else default_case(part, settings)
+
+
+def placed(part: Part, settings: StressSettings) -> StressSettings:
+    """Settings whose forces at interfaces are given in part axes, and whose seats have their place."""
+    interfaces = part.interfaces()
+
+    def frame(name: str) -> Vector:
+        if name not in interfaces:
+            raise StudyError(f"{part.name}: no interface {name!r}; {nearest(name, interfaces)}")
+        return interfaces[name]
+
+    def in_part_axes(load: PartLoad) -> PartLoad:
+        return load.placed(frame(load.interface)) if isinstance(load, InterfaceForce) else load
+
+    cases = tuple(replace(case, loads=tuple(in_part_axes(load) for load in case.loads)) for case in settings.cases)
+    flown = tuple(
+        replace(case, points=tuple(tuple(frame(interface)[:3, 3]) for interface, _ in case.seats))
+        for case in settings.flown
+    )
+    masses = tuple(
+        mass.placed(frame(mass.interface) if mass.interface else np.eye(4)) if isinstance(mass, CarriedMass) else mass
+        for mass in settings.masses
+    )
+    return replace(settings, cases=cases, flown=flown, masses=masses)
 
 
 def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
@@ -109,7 +188,7 @@ def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
     surface = part.fem_surface(settings.geometry, settings.segments)
     edge_length = _edge_length(part, surface, settings)
     cases = load_cases(settings, lambda load: face_force(surface, load, part.name))
-    return native_case(settings, surface, fem.default_size(surface, edge_length), [clamp(*settings.supports)], cases)
+    return native_case(settings, surface, fem.default_size(surface, edge_length), held_faces(settings.supports), cases)
 
 
 def _edge_length(part: Part, surface: fem.SurfaceMesh, settings: StressSettings) -> float:
@@ -123,16 +202,56 @@ def _edge_length(part: Part, surface: fem.SurfaceMesh, settings: StressSettings)
     return float(thickness * share)
 
 
-def load_cases(settings: StressSettings, on_face: Callable[[PressedFace | PushedFace], fem.Load]) -> list[fem.LoadCase]:
-    """The load cases of a part as the solver takes them. on_face: what a total force on a face means for the part."""
+def as_given(load: fem.AffineTraction) -> fem.Load:
+    """A force at a point acts on the whole of its face."""
+    return load
+
+
+def same_mass(mass: fem.RemoteMass) -> fem.RemoteMass:
+    """A mass sits on the whole of its face."""
+    return mass
+
+
+def load_cases(
+    settings: StressSettings,
+    on_face: Callable[[PressedFace | PushedFace], fem.Load],
+    at_point: Callable[[fem.AffineTraction], fem.Load] = as_given,
+) -> list[fem.LoadCase]:
+    """The load cases of a part as the solver takes them.
+
+    on_face, at_point: what a total force on a face, and a force at a point of the part, mean for the part.
+    """
+
+    def solvable(load: PartLoad) -> fem.Load:
+        if isinstance(load, PressedFace | PushedFace):
+            return on_face(load)
+        if isinstance(load, fem.AffineTraction):
+            return at_point(load)
+        if isinstance(load, InterfaceForce):
+            raise TypeError("a force at an interface needs its place: use part_case")
+        return load
+
     return [
         fem.LoadCase(
             case.name,
-            [on_face(load) if isinstance(load, PressedFace | PushedFace) else load for load in case.loads],
+            [solvable(load) for load in case.loads],
             1.0 if case.safety_factor_min is None else case.safety_factor_min,
         )
         for case in settings.cases
     ]
+
+
+def unit_loads(case: FlownCase, at_point: Callable[[fem.AffineTraction], fem.Load] = as_given) -> list[list[fem.Load]]:
+    """Unit loads of a flown case; what a flight gives are factors on them, in this order.
+
+    Force and moment along each axis of every seat, acceleration, its gradient (row by row) about the part's origin.
+    """
+    units: list[list[fem.Load]] = []
+    for (_, face), point in zip(case.seats, case.points, strict=True):
+        units += [[at_point(fem.AffineTraction(face, axis, point))] for axis in np.eye(3)]
+        units += [[at_point(fem.AffineTraction(face, np.zeros(3), point, axis))] for axis in np.eye(3)]
+    units += [[fem.Acceleration(axis)] for axis in np.eye(3)]
+    return units + [[fem.Acceleration(np.zeros(3), entry.reshape(3, 3))] for entry in np.eye(9)]
 
 
 def face_force(surface: fem.SurfaceMesh, load: PressedFace | PushedFace, part: str) -> fem.Force:
@@ -169,6 +288,20 @@ def pressing_direction(surface: fem.SurfaceMesh, face: str) -> Vector:
     return np.asarray(direction / length)
 
 
+def held_face(text: str) -> tuple[str, str]:
+    """Face and directions of an entry of `supports`: `FACE` is held in all, `FACE: xz` in two (a bolt's hole)."""
+    face, colon, axes = (part.strip() for part in text.rpartition(":"))
+    return (face, axes) if colon and axes and set(axes) <= set("xyz") else (text.strip(), "xyz")
+
+
+def held_faces(supports: Sequence[str]) -> list[fem.Support]:
+    """Supports of the entries of `supports`: all clamps as one, then what is held in some directions."""
+    entries = [held_face(text) for text in supports]
+    clamped = [face for face, axes in entries if axes == "xyz"]
+    partly = [fem.Support(fem.select_names(face), axes) for face, axes in entries if axes != "xyz"]
+    return [*([clamp(*clamped)] if clamped else []), *partly]
+
+
 def clamp(*faces: str) -> fem.Support:
     """Named faces fixed in all directions."""
     return fem.Support(fem.select_names(*faces))
@@ -183,10 +316,13 @@ def native_case(
     *,
     copies: int = 1,
     facet_angle_deg: float = 25.0,
+    at_point: Callable[[fem.AffineTraction], fem.Load] = as_given,
+    mass_on: Callable[[fem.RemoteMass], fem.RemoteMass] = same_mass,
 ) -> _core.PartCase:
     """What `codesign._core.evaluate` meshes and solves.
 
-    copies: 2 for one half of a symmetric part; work and stress_50 then refer to the whole part.
+    copies: 2 for one half of a symmetric part; work and stress_50 then refer to the whole part. at_point: as in
+    `load_cases`, for the unit loads of flown cases; mass_on: the same for masses.
     """
     static = _core.fem.StaticSettings()
     static.exclusion = getattr(_core.fem.ExclusionRule, settings.exclusion)
@@ -204,88 +340,11 @@ def native_case(
         tolerance=settings.tolerance,
         max_refinements=MAX_REFINEMENTS if settings.accuracy == "converged" else 0,
     )
+    case.varying = [
+        _core.VaryingCase(flown.name, [native_loads(None, unit) for unit in unit_loads(flown, at_point)])
+        for flown in settings.flown
+    ]
+    case.masses = [mass_on(mass).native(None) for mass in settings.masses if isinstance(mass, fem.RemoteMass)]
     case.modes = settings.modes
     case.buckling = settings.buckling
     return case
-
-
-def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
-    """Numbers of one part for JSON, SI units: those of the load case that governs, and the strength in every case.
-
-    `buckling_factor` is None if the load cannot buckle the part, `safety_factor` if it does not stress it.
-    """
-    result = analysis.result
-    optional: dict[str, Any] = {}
-    if analysis.refinements:
-        optional = {"refinements": analysis.refinements, "change": analysis.change}
-    if len(analysis.frequencies):
-        optional["first_frequency"] = float(analysis.frequencies[0])
-        optional["frequencies"] = [float(f) for f in analysis.frequencies]
-    if len(analysis.buckling_factors):
-        lowest = float(analysis.buckling_factors[0])
-        optional["buckling_factor"] = lowest if math.isfinite(lowest) else None
-    return {
-        "mass": float(mass.mass),
-        "com": [float(x) for x in mass.com],
-        "inertia": [[float(x) for x in row] for row in mass.inertia],
-        **strength_document(result),
-        "load_case": analysis.case_names[analysis.governing],
-        "cases": {
-            name: strength_document(each) | {"max_displacement": each.max_displacement, "work": each.work}
-            for name, each in zip(analysis.case_names, analysis.results, strict=True)
-        },
-        "tolerance_reached": analysis.converged,
-        **optional,
-        "max_displacement": result.max_displacement,
-        "work": result.work,
-        "nodes": len(analysis.mesh.nodes),
-        "tetrahedra": len(analysis.mesh.tets),
-        "seconds": {"mesh": analysis.mesh_seconds, "solve": analysis.solve_seconds},
-    }
-
-
-def strength_document(result: fem.StaticResult) -> dict[str, Any]:
-    """What decides the safety factor, for JSON, SI units.
-
-    `safety_factor` is None if nothing is stressed, `left_out` (the largest stress that the exclusion leaves out) if it
-    leaves out nothing. `peak_resolved` is False if the estimated error exceeds half of the peak.
-    """
-    hidden = result.left_out
-    left_out = {
-        "stress": hidden.stress,
-        "position": [float(x) for x in hidden.position],
-        "border_distance": hidden.border_distance,
-    }
-    return {
-        "safety_factor": result.safety_factor if math.isfinite(result.safety_factor) else None,
-        "peak_stress": result.peak_stress,
-        "peak_position": [float(x) for x in result.peak_position],
-        "peak_resolved": result.peak_resolved,
-        "stress_50": result.stress_50,
-        "stress_error": result.stress_error,
-        "left_out": left_out if hidden.stress > 0.0 else None,
-    }
-
-
-@dataclass(frozen=True, slots=True)
-class Confirmation:
-    """A part as the optimization analyses it beside the part as it is made; documents as of `part_document`.
-
-    confirmed: full geometry, fine mesh, refined around the peak; `tolerance_reached` says whether that was enough.
-    """
-
-    analyzed: dict[str, Any]
-    confirmed: dict[str, Any]
-
-
-def confirm(part: Part, settings: StressSettings) -> Confirmation:
-    """Analyses a part with the given settings, and its full geometry on a fine mesh until the tolerance is reached.
-
-    Raises: MeshError, SolverError, GeometryError.
-    """
-    mass = part.mass_properties()
-    full = replace(settings, geometry="full", accuracy="converged")
-    analyzed, confirmed = (
-        part_document(mass, _core.analyze_part(part_case(part, chosen))) for chosen in (settings, full)
-    )
-    return Confirmation(analyzed, confirmed)

@@ -51,12 +51,11 @@ class Part(ABC):
 
     name: of the part in studies and files.   density: [kg/m³].
     load_variants, support_variants: values of a study's `[fem] load` and `support` that the class knows (a class with
-    its own `stress_case` may know more). most_loads: how many loads it takes; None: any number.
+    its own `stress_case` may know more).
     """
 
     load_variants: ClassVar[tuple[str, ...]] = ("uniform",)
     support_variants: ClassVar[tuple[str, ...]] = ("published",)
-    most_loads: ClassVar[int | None] = None
 
     _: KW_ONLY
     name: str

@@ -16,6 +16,7 @@ from codesign.problem.pareto import non_dominated
 from codesign.problem.quantities import Quantity, words
 from codesign.report.objections import Objection, objections
 from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee_distances, late_growth
+from codesign.report.tolerances import Tolerances
 
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 MOST = 0.75  # of the feasible designs are in view, where the front is one design
@@ -49,6 +50,7 @@ class ReportData:
     provenance: what made the numbers, for people.
     labels: variable -> name for people.   notes: what a reader must know before trusting the numbers.
     baseline_missing: why there is no baseline.   flight_words: what one flight is.
+    tolerances: chosen designs as they would be made, if they were sampled.
     part_words: part -> its load case and material.
     """
 
@@ -69,6 +71,7 @@ class ReportData:
     baseline_missing: str = "The study names no original design to compare with."
     part_words: dict[str, PartWords] = field(default_factory=dict)
     flight_words: str = ""
+    tolerances: Tolerances | None = None
 
     def label(self, variable: Variable) -> str:
         """A variable's name for people."""
@@ -117,7 +120,9 @@ class ReportData:
 
     def objections(self, position: int) -> tuple[Objection, ...]:
         """What speaks against building an entry."""
-        return objections(self.entries[position].evaluation, self.limits)
+        evaluation = self.entries[position].evaluation
+        made = self.tolerances.of(evaluation.design) if self.tolerances is not None else None
+        return objections(evaluation, self.limits, made)
 
     @cached_property
     def choices(self) -> list[int]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.quantities import words
+from codesign.report.tolerances import MadeDesign
 from codesign.units import MILLIMETER
 
 UNSETTLED = ("have a stress that is not settled", "keep the safety factor by less than its error")
@@ -27,9 +28,13 @@ class Objection:
     final: bool
 
 
-def objections(evaluation: Evaluation, limits: Limits) -> tuple[Objection, ...]:
-    """Everything that speaks against a design, the final ones first."""
+def objections(evaluation: Evaluation, limits: Limits, made: MadeDesign | None = None) -> tuple[Objection, ...]:
+    """Everything that speaks against a design, the final ones first. made: its samples within the tolerances."""
     found = []
+    if made is not None and not made.robust:
+        lost, reason = made.samples - made.feasible, f" ({made.reasons[0]})" if made.reasons else ""
+        text = f"{lost} of {made.samples} samples within the tolerances are not feasible{reason}"
+        found.append(Objection("are made in tolerance but not feasible too often", text, True))
     if evaluation.status != "feasible":
         reason = evaluation.reason or "a constraint is violated"
         found.append(Objection(f"are {evaluation.status}", f"it is {evaluation.status}: {reason}", True))
@@ -60,8 +65,8 @@ def _blast(evaluation: Evaluation) -> Objection | None:
 def _parts(evaluation: Evaluation, limits: Limits) -> list[Objection]:
     """Parts whose stress is not settled, or whose safety factor keeps its limit only by less than its error."""
     found = []
-    least = limits["safety_factor"][1] if "safety_factor" in limits else None
     for name, part in evaluation.parts.items():
+        least = least_factor(name, part, limits)
         factor, peak, error = (part.get(key) for key in ("safety_factor", "peak_stress", "stress_error"))
         share = error / peak if error and peak else 0.0
         spelled, estimate = words(name).lower(), f"{100 * share:.1f}\u202f%"
@@ -72,6 +77,12 @@ def _parts(evaluation: Evaluation, limits: Limits) -> list[Objection]:
             text = f"the safety factor {factor:.1f} of the {spelled} keeps its limit {least:g} by less than its error"
             found.append(Objection(UNSETTLED[1], text, False))
     return found
+
+
+def least_factor(name: str, part: Mapping[str, Any], limits: Limits) -> float | None:
+    """Safety factor that is asked of a part: of the load case that governs it, or of all."""
+    asked = limits.get(f"parts.{name}.cases.{part.get('load_case')}.safety_factor") or limits.get("safety_factor")
+    return None if asked is None else asked[1]
 
 
 def _control(evaluation: Evaluation) -> Objection | None:

@@ -14,6 +14,7 @@ from codesign.problem.quantities import words
 from codesign.report.data import Entry, ReportData
 from codesign.report.details import load_details
 from codesign.report.study_words import flight_words, objective_quantities, part_words
+from codesign.report.tolerances import load_tolerances
 from codesign.storage.runs import Run, load_run
 
 logger = logging.getLogger(__name__)
@@ -51,6 +52,7 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
         **({"baseline_missing": missing} if (missing := _baseline_missing(study)) else {}),
         part_words=part_words(study.config) if study is not None else {},
         flight_words=flight_words(study.config) if study is not None else "",
+        tolerances=load_tolerances(Path(directory)),
     )
 
 

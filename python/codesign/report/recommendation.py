@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
+from codesign.problem.quantities import words
 from codesign.report.data import ReportData
-from codesign.report.objections import UNSETTLED
+from codesign.report.objections import UNSETTLED, least_factor
 from codesign.report.words import EQUAL, combinations, listed, percent, plural
+from codesign.units import MILLIMETER
 
 CLEARLY = 0.1  # logarithm of the product of the objectives: a tenth better in one of them, say
 SETTLED = 0.01  # of the front's hypervolume: what the last quarter of a settled search adds at most
@@ -96,12 +100,28 @@ def strength(run: ReportData) -> str:
     factors = {name: factor for name, part in parts.items() if (factor := part.get("safety_factor"))}
     if not factors or not math.isfinite(min(factors.values())):
         return ""
-    weakest = min(factors, key=lambda name: factors[name])
-    asked = f" (at least {run.limits['safety_factor'][1]:g} is asked for)" if "safety_factor" in run.limits else ""
+    limits = {name: least_factor(name, parts[name], run.limits) for name in factors}
+    weakest = min(factors, key=lambda name: factors[name] / (limits[name] or 1.0))
+    asked = f" (at least {limits[weakest]:g} is asked for)" if limits[weakest] is not None else ""
+    asked += decided(parts[weakest])
     known = run.part_words.get(weakest)
     case = f": {known.load}; {known.material}. Other loads and supports were not analyzed" if known else ""
     name = weakest.replace("_", " ")
     return f"Its weakest part, the {name}, yields at {factors[weakest]:.1f} times its load{asked}{case}."
+
+
+def decided(part: Mapping[str, Any]) -> str:
+    """Which of several load cases decides a part's strength, when, where, and how the flight fatigues it."""
+    cases = part.get("cases", {})
+    if len(cases) < 2:
+        return ""
+    text = f"; of its {len(cases)} load cases {words(part['load_case']).lower()} decides"
+    if "time" in part:
+        text += f", at {part['time']:.2f}\u202fs on {words(part['link']).lower()}"
+    x, y, z = (value / MILLIMETER for value in part["peak_position"])
+    text += f", at ({x:.1f}, {y:.1f}, {z:.1f})\u202fmm of the part"
+    flights = [case["fatigue"]["flights"] for case in cases.values() if case.get("fatigue", {}).get("flights")]
+    return text + (f"; by its fatigue it stands {min(flights):.1g} such flights" if flights else "")
 
 
 def reservations(run: ReportData) -> list[str]:

@@ -51,9 +51,14 @@ def _load_case(config: StudyConfig, part: PartConfig) -> str:
 
 
 def _case(case: LoadCaseConfig, named: bool) -> str:
-    loads = listed([_load(load) for load in case.loads])
+    loads = listed([_load(load) for load in case.loads] or [_flown(case)])
     asked = f", at least {case.safety_factor_min:g} times" if case.safety_factor_min is not None else ""
     return f"{case.name}: {loads}{asked}" if named else loads
+
+
+def _flown(case: LoadCaseConfig) -> str:
+    seats = listed([f"{interface} on face {face}" for interface, face in case.flown.items()])
+    return f"loads of the flight at every sample, of what hangs at {seats}, and the part's own weight and inertia"
 
 
 def _load(load: LoadConfig) -> str:
@@ -63,9 +68,10 @@ def _load(load: LoadConfig) -> str:
         return f"acceleration {number}\u202fm/s²"
     unit = "MPa" if load.kind.endswith("_mpa") else "N"
     verb = {"pressing_n": "pressing on", "pressure_mpa": "pressure on"}.get(load.kind, "on")
+    axes = f" in axes of {load.interface}" if load.interface else ""
     remote = f" at ({', '.join(f'{x:g}' for x in load.point_mm)})\u202fmm" if load.point_mm else ""
     moment = f" with ({', '.join(f'{x:g}' for x in load.moment_n_m)})\u202fN\u202fm" if load.moment_n_m else ""
-    return f"{number}\u202f{unit}{moment}{remote} {verb} face {load.face}"
+    return f"{number}\u202f{unit}{moment}{remote}{axes} {verb} face {load.face}"
 
 
 def _material(config: StudyConfig, part: PartConfig) -> str:

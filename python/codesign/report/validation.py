@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import logging
+import math
+import statistics
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -12,6 +14,7 @@ from codesign.problem.design_space import DesignValue
 logger = logging.getLogger(__name__)
 
 FILE = "validation.json"
+LEAST_PAIRS = 3  # disturbed flights that tell how much chance decides
 ORIGINAL = "original"
 
 
@@ -78,6 +81,17 @@ class Validation:
             if old and new is not None:
                 changes[flight.case] = (new - old) / abs(old)
         return changes
+
+    def noise(self, role: str, objective: str) -> float | None:
+        """What chance leaves open of the mean relative change from the original to a design: two standard errors.
+
+        Over the disturbed flights that both completed, paired by seed and trajectory; None for fewer than three. A
+        smaller change is a tie.
+        """
+        changes = list(self.change(role, objective, True).values())
+        if len(changes) < LEAST_PAIRS:
+            return None
+        return 2.0 * statistics.stdev(changes) / math.sqrt(len(changes))
 
     def to_json(self) -> str:
         """JSON text; floats round-trip exactly."""

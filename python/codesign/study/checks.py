@@ -130,12 +130,19 @@ def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]
 def _load_problems(part: PartConfig, key: str) -> Iterator[Problem]:
     if part.loads and part.cases:
         yield f"{key}.loads", "either loads (one load case) or cases (by name)"
+    if part.cases and all(case.flown for case in part.cases):
+        yield (
+            f"{key}.cases",
+            "all are flown: one case with loads of its own is needed, for lost flights and for the mesh",
+        )
     if twice := repeated(case.name for case in part.cases):
         yield f"{key}.cases", f"two load cases have the name {twice!r}"
     for case in part.load_cases:
         if "." in case.name:
             yield f"{key}.cases", f"a load case's name must not hold a dot: {case.name!r}"
-        if not case.loads:
+        if case.flown and case.loads:
+            yield f"{key}.cases[{case.name}]", "either loads or flown: a flight adds its own weight and inertia"
+        if not case.loads and not case.flown:
             yield (
                 f"{key}.cases[{case.name}].loads" if part.cases else f"{key}.loads",
                 "empty: nothing would load the part",

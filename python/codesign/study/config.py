@@ -53,12 +53,19 @@ class VariableConfig(Section, frozen=True, kw_only=True):
 
 
 class MaterialConfig(Section, frozen=True, kw_only=True):
-    """Isotropic linear elastic material."""
+    """Isotropic linear elastic material.
+
+    fatigue_strength_mpa: stress amplitude, fully reversed, that smooth specimens stand for fatigue_cycles; with the
+    ultimate strength it gives the fatigue of flown loads.
+    """
 
     young_modulus_gpa: Positive
     poisson_ratio: Annotated[float, Meta(gt=-1, lt=0.5)]
     yield_strength_mpa: Positive
     density_kg_m3: Positive
+    ultimate_strength_mpa: Positive | None = None
+    fatigue_strength_mpa: Positive | None = None
+    fatigue_cycles: Positive | None = None
 
 
 class LoadConfig(Section, frozen=True, kw_only=True):
@@ -66,16 +73,20 @@ class LoadConfig(Section, frozen=True, kw_only=True):
 
     pressing_n: total force on a face, against its mean outward normal. force_n: total force on a face, a vector in part
     axes, for round faces, whose normals cancel, say. Both spread uniformly. With point_mm or moment_n_m the force acts
-    at that point (of part axes) and has that moment about it: a remote force, affine over the face. pressure_mpa:
-    against the outward normal everywhere. traction_mpa: force per area, the same everywhere. acceleration_m_s2: a field
+    at that point (of part axes) and has that moment about it: a remote force, affine over the face. interface: point,
+    force and moment are in the axes of this interface of the part, and move with it. pressure_mpa: against the outward
+    normal everywhere. bearing_n: total force by pressure alone, as a pin presses on a bore. moment_n_m alone: a moment
+    on a face. traction_mpa: force per area, the same everywhere. acceleration_m_s2: a field
     like gravity on the whole part, without a face.
     """
 
     face: str = ""
     pressing_n: float | None = None
     force_n: Vector3 | None = None
+    interface: str = ""
     point_mm: Vector3 | None = None
     moment_n_m: Vector3 | None = None
+    bearing_n: Vector3 | None = None
     pressure_mpa: float | None = None
     traction_mpa: Vector3 | None = None
     acceleration_m_s2: Vector3 | None = None
@@ -87,27 +98,49 @@ class LoadConfig(Section, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         given = [name for name in LOAD_KINDS if getattr(self, name) is not None]
+        if "force_n" in given and "moment_n_m" in given:
+            given.remove("moment_n_m")
         if len(given) != 1:
             said = " and ".join(given) or "nothing"
             raise ValueError(f"a load needs exactly one of {', '.join(LOAD_KINDS)}; given {said}")
         value = getattr(self, given[0])
-        remote = self.point_mm is not None or self.moment_n_m is not None
-        if remote and self.force_n is None:
-            raise ValueError("point_mm and moment_n_m belong to force_n")
+        remote = self.point_mm is not None or self.interface
+        if remote and self.force_n is None and self.moment_n_m is None:
+            raise ValueError("point_mm and interface belong to force_n and moment_n_m")
         if not any(value if isinstance(value, tuple) else (value,)) and not any(self.moment_n_m or ()):
             raise ValueError(f"{given[0]} of a load is zero")
         if bool(self.face) == (given[0] == "acceleration_m_s2"):
             raise ValueError("a load names its face, but for acceleration_m_s2, which acts on the whole part")
 
 
-LOAD_KINDS = ("pressing_n", "force_n", "pressure_mpa", "traction_mpa", "acceleration_m_s2")
+LOAD_KINDS = (
+    "pressing_n", "force_n", "moment_n_m", "bearing_n", "pressure_mpa", "traction_mpa", "acceleration_m_s2",
+)  # fmt: skip
+
+
+class MassOnFaceConfig(Section, frozen=True, kw_only=True):
+    """A rigid body that a face of the part carries, an engine, say: accelerations pull at it, frequencies count it.
+
+    Point and moments of inertia are in axes of the interface, if one is named.
+    """
+
+    face: Name
+    mass_kg: Positive
+    point_mm: Vector3
+    interface: str = ""
+    inertia_kg_m2: Vector3 = (0.0, 0.0, 0.0)
 
 
 class LoadCaseConfig(Section, frozen=True, kw_only=True):
-    """Loads that act together. safety_factor_min: what they ask for, where it is not what the study asks for."""
+    """Loads that act together. safety_factor_min: what they ask for, where it is not what the study asks for.
+
+    flown: instead of loads, those of the flight at every sample: interface of the part -> face that what hangs on it
+    pushes on, by its thrust, weight and inertia; the part's own weight and inertia act too.
+    """
 
     name: Name
-    loads: list[LoadConfig]
+    loads: list[LoadConfig] = []
+    flown: dict[Name, Name] = {}
     safety_factor_min: Positive | None = None
 
 
@@ -115,8 +148,9 @@ class PartConfig(Section, frozen=True, kw_only=True):
     """One parametric part: the class that shapes it, the variables it takes, its material and its places in the robot.
 
     shape: `module:Class`; the module is a file beside study.toml or any importable module.
-    parameters: the part's parameter -> design variable. supports: faces that are clamped. options: further keyword
-    arguments of the class. loads: of the only load case; or cases: any number of them, by name. material: a name of
+    parameters: the part's parameter -> design variable. supports: faces that are clamped, or `FACE: xz`, held in
+    these directions only (a bolt's hole across, the face under its head along). options: further keyword arguments of
+    the class. loads: of the only load case; or cases: any number of them, by name. material: a name of
     [materials], else one that `codesign materials` lists. density_kg_m3: of the part's mass, where it is not that of
     the material; reports say so.
     """
@@ -129,6 +163,7 @@ class PartConfig(Section, frozen=True, kw_only=True):
     supports: list[Name]
     loads: list[LoadConfig] = []
     cases: list[LoadCaseConfig] = []
+    masses: list[MassOnFaceConfig] = []
     placements: list[PartPlacement] = []
     options: dict[str, float | bool | str] = {}
 
@@ -136,6 +171,11 @@ class PartConfig(Section, frozen=True, kw_only=True):
     def load_cases(self) -> list[LoadCaseConfig]:
         """The load cases, be there one or more."""
         return self.cases or [LoadCaseConfig(name=ONLY_CASE, loads=self.loads)]
+
+    @property
+    def flies(self) -> bool:
+        """Whether a load case takes its loads from the flight."""
+        return any(case.flown for case in self.cases)
 
 
 class RobotConfig(Section, frozen=True, kw_only=True):
@@ -231,6 +271,22 @@ class ValidationConfig(Section, frozen=True, kw_only=True):
     trajectories: list[str] = []
 
 
+class TolerancesConfig(Section, frozen=True, kw_only=True):
+    """How far what is made lies from what is drawn, for `codesign tolerances`; normal, cut off at three deviations.
+
+    dimensions: class of ISO 2768-1, fine, medium or coarse, of lengths that are design variables. angle_deg: of angles
+    that are. jet_angle_deg: of what hangs on interfaces, about two axes. young_modulus, yield_strength, density:
+    relative standard deviations of the material.
+    """
+
+    dimensions: Literal["f", "m", "c"] = "m"
+    angle_deg: NonNegative = 0.5
+    jet_angle_deg: NonNegative = 0.5
+    young_modulus: Annotated[float, Meta(ge=0, lt=0.3)] = 0.02
+    yield_strength: Annotated[float, Meta(ge=0, lt=0.3)] = 0.04
+    density: Annotated[float, Meta(ge=0, lt=0.3)] = 0.01
+
+
 class OptimizerConfig(Section, frozen=True, kw_only=True):
     """Defaults of the search; the command line overrides them.
 
@@ -278,6 +334,7 @@ class StudyConfig(Section, frozen=True, kw_only=True):
     constraints: ConstraintsConfig = ConstraintsConfig()
     interference: InterferenceSettings | None = None
     validation: ValidationConfig = ValidationConfig()
+    tolerances: TolerancesConfig = TolerancesConfig()
     optimizer: OptimizerConfig = OptimizerConfig()
     execution: ExecutionConfig = ExecutionConfig()
 
@@ -292,7 +349,7 @@ class StudyConfig(Section, frozen=True, kw_only=True):
 # Sections that decide the numbers of an evaluation; the rest (search, execution) does not enter the study's hash.
 DECIDING_SECTIONS = (
     "robot", "variables", "materials", "parts", "fem", "flight", "trajectories", "objectives", "constraints",
-    "interference",
+    "interference", "tolerances",
 )  # fmt: skip
 
 RawStudy = dict[str, Any]

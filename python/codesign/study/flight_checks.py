@@ -75,6 +75,10 @@ def _flightless_problems(config: StudyConfig) -> Iterator[Problem]:
         path = QUANTITIES[name].path if name in QUANTITIES else name
         if name in FAMILY or path.startswith(("flight.", "objective_families.")):
             yield "objectives or constraints", f"{name!r} needs the section [flight]; parts have mass, safety_factor, …"
+    for part in config.parts:
+        for case in part.cases:
+            if case.flown:
+                yield f"parts.{part.name}.cases[{case.name}].flown", "needs a flight to take its loads from"
 
 
 def _time_problems(flight: FlightConfig) -> Iterator[Problem]:

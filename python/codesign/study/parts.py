@@ -9,7 +9,7 @@ import numpy as np
 
 from codesign.errors import CodesignError, ModelError
 from codesign.geometry.shape import face_names
-from codesign.parts.load_case import pressing_direction
+from codesign.parts.load_case import held_face, pressing_direction
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignValue
 from codesign.robot.assembly import PartBody, assemble
@@ -39,10 +39,6 @@ def built_problems(
     yield from _variant_problems(config, part_classes)
     for part in config.parts:
         part_class = part_classes[part.name]
-        most = part_class.most_loads
-        for case in part.load_cases:
-            if most is not None and len(case.loads) > most:
-                yield _loads_key(part, case), f"{part.shape} takes {most}, {len(case.loads)} are given"
         wrong_options = list(_option_problems(part, part_class))
         yield from wrong_options
         if wrong_options:
@@ -88,19 +84,39 @@ def _face_problems(part: PartConfig, config: StudyConfig, built: Part) -> Iterat
         return  # a surface from elsewhere: its faces are known once it is there
     named = face_names(built.fem_shape(config.fem.geometry))
     surface = None if hasattr(built, "stress_case") else built.fem_surface(config.fem.geometry)
-    for face in part.supports:
-        yield from unknown(f"parts.{part.name}.supports", "face", face, named)
+    held = {held_face(text)[0] for text in part.supports}
+    for face in [*held, *(mass.face for mass in part.masses)]:
+        yield from unknown(f"parts.{part.name}.supports or masses", "face", face, named)
+    for mass in part.masses:
+        if mass.interface:
+            yield from unknown(f"parts.{part.name}.masses", "interface", mass.interface, list(built.interfaces()))
     for case in part.load_cases:
+        yield from _seat_problems(part, case, built, named)
         for load in (load for load in case.loads if load.face):
             key = _loads_key(part, case)
+            if load.interface:
+                yield from unknown(key, "interface", load.interface, list(built.interfaces()))
             yield from unknown(key, "face", load.face, named)
-            if load.face in part.supports:
+            if load.face in held:
                 yield key, f"the load acts on {load.face!r}, which is held"
             if load.pressing_n is not None and surface is not None and load.face in surface.face_names:
                 try:
                     pressing_direction(surface, load.face)
                 except ModelError as error:
                     yield key, f"pressing_n on {error}"
+
+
+def _seat_problems(part: PartConfig, case: LoadCaseConfig, built: Part, faces: Sequence[str]) -> Iterator[Problem]:
+    """Interfaces and faces of a flown case, and whether anything hangs on them."""
+    key = f"parts.{part.name}.cases[{case.name}].flown"
+    used = {attachment.interface for place in part.placements for attachment in place.joints.values()}
+    for interface, face in case.flown.items():
+        yield from unknown(key, "interface", interface, list(built.interfaces()))
+        yield from unknown(key, "face", face, faces)
+        if face in {held_face(text)[0] for text in part.supports}:
+            yield key, f"what hangs on {interface!r} pushes on {face!r}, which is held"
+        if interface in built.interfaces() and interface not in used:
+            yield key, f"no joint of the placements hangs on {interface!r}: nothing would push on {face!r}"
 
 
 def _loads_key(part: PartConfig, case: LoadCaseConfig) -> str:

@@ -90,7 +90,7 @@ def test_materials_by_name_and_by_numbers():
         ([], [PULL], "--fix"),
         (["normal:-1,0,0: q"], [PULL], "'q' is no set of directions"),
         (["normal:-1,0,0: xx"], [PULL], "'xx' is no set of directions"),
-        (["normal:-1,0,0"], ["normal:1,0,0: moment 1 2 3"], "expected 'SELECTION: fx fy fz'"),
+        (["normal:-1,0,0"], ["normal:1,0,0: torque 1 2 3"], "expected 'SELECTION: fx fy fz'"),
     ],
 )
 def test_selections_that_make_no_sense_are_refused(bar, fix, load, message):

@@ -10,7 +10,8 @@ from codesign.errors import ModelError
 from codesign.geometry.profile import Path, Resolution
 from codesign.geometry.shape import Extrusion
 from codesign.geometry.solid import build_solid
-from codesign.parts.load_case import StressSettings, native_case, part_document
+from codesign.parts.load_case import StressSettings, native_case
+from codesign.parts.strength import part_document
 from codesign.parts.surface import surface_mesh
 from codesign.robot.inertial import Inertial
 from fem_meshes import box_mesh

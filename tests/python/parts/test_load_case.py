@@ -11,8 +11,9 @@ from codesign.chain.study import load_study
 from codesign.geometry.profile import Path, Resolution, circle
 from codesign.geometry.shape import Extrusion, Shape
 from codesign.geometry.solid import build_solid
-from codesign.parts.load_case import CaseSettings, PressedFace, StressSettings, confirm, default_case, part_case
+from codesign.parts.load_case import CaseSettings, PressedFace, StressSettings, default_case, part_case
 from codesign.parts.part import Part, parameter
+from codesign.parts.strength import confirm
 from codesign.parts.surface import surface_mesh
 from codesign.problem.evaluation import Evaluation
 from codesign.studies.ironcub.bracket import JetpackBracket

@@ -24,7 +24,9 @@ from codesign.study.loading import study_from
 
 Place = tuple[str | int, ...]
 # Of a load: one kind; of a part: one load case or several.
-EITHER = (*LOAD_KINDS, "face", "point_mm", "moment_n_m", "loads", "cases", "min", "max", "step", "values", "choices")
+EITHER = (
+    *LOAD_KINDS, "face", "interface", "point_mm", "loads", "flown", "cases", "min", "max", "step", "values", "choices",
+)  # fmt: skip
 NAN, INFINITY = math.nan, math.inf
 WHOLE = """
 [[parts]]
@@ -36,12 +38,24 @@ density_kg_m3 = 7000.0
 supports = ["bottom"]
 loads = [{ face = "top", pressing_n = 100.0 }]
 options = { depth = 20.0, name = "rod" }
+masses = [{ face = "top", mass_kg = 0.1, point_mm = [0.0, 0.0, 0.0], inertia_kg_m2 = [1e-4, 1e-4, 1e-4] }]
+
+[tolerances]
+dimensions = "m"
+angle_deg = 0.5
+jet_angle_deg = 0.5
+young_modulus = 0.02
+yield_strength = 0.04
+density = 0.01
 
 [materials.steel]
 young_modulus_gpa = 200.0
 poisson_ratio = 0.3
 yield_strength_mpa = 235.0
 density_kg_m3 = 7850.0
+ultimate_strength_mpa = 360.0
+fatigue_strength_mpa = 170.0
+fatigue_cycles = 1e7
 
 [variables.gain]
 min = 20.0
@@ -128,14 +142,30 @@ def complete(raw: dict[str, Any]) -> None:
     pose = {"xyz_mm": [0.0, 0.0, 0.0], "rpy_deg": [0.0, 0.0, 0.0]}
     place |= {"link_T_part": copy.deepcopy(pose), "mirror": "y"}
     place["joints"]["front_roll"]["interface_T_child"] = pose
+    interface = place["joints"]["front_roll"]["interface"]
     loads = [
         *raw["parts"][0].pop("loads"),
         {"face": "seat", "force_n": [0.0, 0.0, -9.0], "point_mm": [1.0, 0.0, 0.0], "moment_n_m": [1.0, 0.0, 0.0]},
+        {"face": "seat", "interface": interface, "force_n": [0.0, 0.0, -9.0], "moment_n_m": [1.0, 0.0, 0.0]},
+        {"face": "seat", "bearing_n": [0.0, 9.0, 0.0]},
+        {"face": "seat", "moment_n_m": [1.0, 0.0, 0.0]},
         {"face": "seat", "pressure_mpa": 1.0},
         {"face": "seat", "traction_mpa": [0.0, 0.0, -1.0]},
         {"acceleration_m_s2": [0.0, 0.0, -9.81]},
     ]
-    raw["parts"][0]["cases"] = [{"name": "thrust", "loads": loads, "safety_factor_min": 5.0}]
+    raw["parts"][0]["cases"] = [
+        {"name": "thrust", "loads": loads, "safety_factor_min": 5.0},
+        {"name": "flown", "flown": {interface: "seat"}, "safety_factor_min": 5.0},
+    ]
+    raw["parts"][0]["masses"] = [
+        {
+            "face": "seat",
+            "interface": interface,
+            "mass_kg": 0.1,
+            "point_mm": [0.0, 0.0, 9.0],
+            "inertia_kg_m2": [0, 0, 0],
+        }
+    ]
     raw["fem"] |= {"load": "uniform", "support": "published", "exclusion_distance_mm": 3.0, "memory_limit_mib": 1400}
     raw["fem"]["edge_length_mm"] = 2.0
     raw |= {"extends": "", "without": []}

@@ -1,7 +1,8 @@
-"""Commands about runs: optimize, resume, runs, report, validate."""
+"""Commands about runs: optimize, resume, runs, report, validate, tolerances."""
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -162,4 +163,25 @@ def validate(
 
     run_validate(run_dir, designs or DEFAULT_DESIGNS, trajectories or None, seeds=seeds, workers=workers)
     out.print(f"validated; show it with: codesign report {run_dir}", soft_wrap=True)
+    return 0
+
+
+@commands.command(epilog="Example: `codesign tolerances runs/a --designs recommended --samples 100`")
+def tolerances(
+    run_dir: RunArgument,
+    designs: Annotated[list[str] | None, typer.Option(help="recommended, best, front, spread:N or a number.")] = None,
+    samples: Annotated[int, typer.Option(min=1, help="How often each design is made.")] = 100,
+    workers: WorkersOption = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Makes designs many times within the study's tolerances: how safety factors and flight scatter."""
+    from codesign.cli.console import print_tolerances
+    from codesign.followup.tolerances import DEFAULT_DESIGNS, sample_designs
+
+    found = sample_designs(run_dir, designs or DEFAULT_DESIGNS, samples=samples, workers=workers)
+    if as_json:
+        print_json(json.loads(found.to_json()))
+    else:
+        print_tolerances(found)
+        out.print(f"the report shows them: codesign report {run_dir}", soft_wrap=True)
     return 0

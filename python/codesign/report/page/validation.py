@@ -55,22 +55,29 @@ def _changes(run: ReportData, validation: Validation) -> str:
         flown = validation.of(role)
         cells = [f"<td>{escape(words(role))}</td>", f"<td>{sum(f.completed for f in flown)} of {len(flown)}</td>"]
         for objective in run.objectives:
-            cells += [_change_cell(list(validation.change(role, objective.key, wild).values())) for wild in kinds]
+            noise = validation.noise(role, objective.key)
+            cells += [
+                _change_cell(list(validation.change(role, objective.key, wild).values()), noise) for wild in kinds
+            ]
         if role != ORIGINAL:
             rows.append(f"<tr>{''.join(cells)}</tr>")
         else:
             rows.append(f'<tr>{cells[0]}{cells[1]}<td colspan="{len(cells) - 2}"></td></tr>')
     return (
         '<div class="sideways"><table class="figures"><caption class="count">Mean change from the original over all '
-        f"flights that both completed; below it, the least and the greatest.</caption><thead><tr>{''.join(heads)}</tr>"
+        "flights that both completed; below it, the least and the greatest. A tie: a mean change within two standard "
+        f"errors of the disturbed flights, paired by seed.</caption><thead><tr>{''.join(heads)}</tr>"
         f"</thead><tbody>{''.join(rows)}</tbody></table></div>"
     )
 
 
-def _change_cell(changes: list[float]) -> str:
+def _change_cell(changes: list[float], noise: float | None) -> str:
+    """Mean, least and greatest change; one within the noise of paired seeds is a tie."""
     if not changes:
         return "<td>–</td>"
     mean = float(np.mean(changes))
+    if noise is not None and abs(mean) <= noise:
+        return f"<td>tie<small>{percent(mean)}, chance ± {100 * noise:.1f}\u202f%</small></td>"
     sense = "good" if mean < -5e-4 else "bad" if mean > 5e-4 else ""
     ends = f"{percent(min(changes))} … {percent(max(changes))}"
     return f'<td><span class="{sense}">{percent(mean)}</span><small>{ends}</small></td>'

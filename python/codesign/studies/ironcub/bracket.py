@@ -6,7 +6,7 @@ Part frame (mm): z = 0 lower face of the base, z up; x away from the robot; y = 
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,15 @@ from codesign import _core, fem
 from codesign.errors import GeometryError
 from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, box, cylinder, polar, stepped_hole, union
-from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, clamp, load_cases, native_case
+from codesign.parts.load_case import (
+    PartLoad,
+    PressedFace,
+    PushedFace,
+    StressSettings,
+    held_faces,
+    load_cases,
+    native_case,
+)
 from codesign.parts.part import Part, parameter
 from codesign.units import MILLIMETER
 
@@ -41,7 +49,6 @@ class JetpackBracket(Part):
 
     load_variants = ("uniform", "thrust_line")
     support_variants = ("published", "bolted")
-    most_loads = 1
 
     angle: float = parameter("deg", minimum=0.5, maximum=89.5)
     distance: float = parameter("mm", minimum=0.0, maximum=400.0)
@@ -200,41 +207,48 @@ class JetpackBracket(Part):
     half_width = HALF_WIDTH * MILLIMETER
 
     def stress_case(self, settings: StressSettings) -> _core.PartCase:
-        """The half y >= 0, finest along both creases, where the stress is largest.
+        """The half y >= 0, or the whole part if a load is not symmetric; finest along both creases.
 
-        The load is a traction over the seat's disc, affine so that force and moment are exact; its center is that of
-        the pocket's floor, or the turbine's axis (`load = "thrust_line"`).
+        Forces are tractions over the seat's disc, affine so that force and moment are exact. Total forces act at the
+        center of the pocket's floor, or at the turbine's axis (`load = "thrust_line"`).
         """
         if settings.load not in ("uniform", "thrust_line"):
             raise GeometryError(f"{self.name}: load = {settings.load!r}: there are uniform and thrust_line")
+        half = not (settings.flown or settings.masses) and all(
+            _symmetric(load) for case in settings.cases for load in case.loads
+        )
         supports = list(settings.supports) if settings.support == "published" else ["pad", "screw_seat"]
-        surface = self.fem_surface(settings.geometry, settings.segments, support=settings.support)
+        surface = self.fem_surface(settings.geometry, settings.segments, support=settings.support, half=half)
+        center = self.turbine_axis if settings.load == "thrust_line" else self.seat_center
+        pocketed = settings.geometry == "full"
+        disc = None if pocketed else fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
+        share, aside = (0.5, self._half_floor_aside) if half else (1.0, np.zeros(3))
+
+        def at_point(load: fem.AffineTraction) -> fem.Load:
+            force, point, moment = (np.asarray(value, dtype=float) for value in (load.force, load.point, load.moment))
+            return fem.AffineTraction(load.where, share * force, point + aside, share * moment, region=disc)
+
+        def on_face(load: PressedFace | PushedFace) -> fem.Load:
+            return at_point(fem.AffineTraction(load.face, load.along(self.slab_normal), center))
+
+        def mass_on(mass: fem.RemoteMass) -> fem.RemoteMass:
+            return replace(mass, region=disc)
+
+        cases = load_cases(settings, on_face, at_point)
+        held = [*held_faces(supports), *([fem.Support("symmetry", axes="y", symmetry=True)] if half else [])]
+        size = self._size_field(settings, half)
+        return native_case(
+            settings, surface, size, held, cases, copies=2 if half else 1, at_point=at_point, mass_on=mass_on
+        )
+
+    @property
+    def _half_floor_aside(self) -> Vector:
+        """(3,) from the center of the pocket's floor to the centroid of its half y >= 0 [m]."""
         floor = math.pi * SEAT_RADIUS**2 / 2.0 - len(SEAT_HOLES) / 2.0 * math.pi * SEAT_HOLE_RADIUS**2
         moment = 2.0 / 3.0 * SEAT_RADIUS**3 - sum(y * math.pi * SEAT_HOLE_RADIUS**2 for _, y in SEAT_HOLES if y > 0.0)
-        aside = np.array([0.0, moment / floor, 0.0]) * MILLIMETER  # centroid of half of the floor
-        center = self.turbine_axis if settings.load == "thrust_line" else self.seat_center
-        whole = settings.geometry == "full"
-        disc = None if whole else fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
+        return np.array([0.0, moment / floor, 0.0]) * MILLIMETER
 
-        def traction(load: PressedFace | PushedFace) -> fem.Load:
-            force = load.along(self.slab_normal)
-            if force[1] != 0.0:
-                raise GeometryError(
-                    f"{self.name}: the half y >= 0 is analyzed: a force with a y component cannot be applied"
-                )
-            return fem.AffineTraction(load.face, 0.5 * force, center + aside, region=disc)
-
-        for load in (load for case in settings.cases for load in case.loads):
-            if not isinstance(load, PressedFace | PushedFace | fem.Pressure):
-                kind = type(load).__name__
-                raise GeometryError(
-                    f"{self.name}: the half y >= 0 is analyzed: it takes forces and pressures, no {kind}"
-                )
-        cases = load_cases(settings, traction)
-        held = [clamp(*supports), fem.Support("symmetry", axes="y", symmetry=True)]
-        return native_case(settings, surface, self._size_field(settings), held, cases, copies=2)
-
-    def _size_field(self, settings: StressSettings) -> fem.SizeField:
+    def _size_field(self, settings: StressSettings, half: bool) -> fem.SizeField:
         """Fine along lines 2 mm behind each crease, on the side away from the clamp."""
         fine = settings.accuracy != "optimization"
         base, size, growth, radius = (8.0, 0.5, 0.35, 2.0) if fine else (12.0, 0.8, 0.5, 1.5)
@@ -242,8 +256,23 @@ class JetpackBracket(Part):
         behind = 2.0 * MILLIMETER * self.slab_direction
         sources = [
             fem.SizeSource(
-                np.array([crease + behind, crease + behind + across]), size * MILLIMETER, growth, radius * MILLIMETER
+                np.array([crease + behind - (0.0 if half else across), crease + behind + across]),
+                size * MILLIMETER,
+                growth,
+                radius * MILLIMETER,
             )
             for crease in (self.lower_crease, self.upper_crease)
         ]
         return fem.SizeField(base * MILLIMETER, sources)
+
+
+def _symmetric(load: PartLoad) -> bool:
+    """Whether a load is its own mirror image in y = 0; a pressure is, since every face of the part is."""
+    if isinstance(load, PressedFace | fem.Pressure):
+        return True
+    if isinstance(load, PushedFace):
+        return load.force[1] == 0.0
+    if isinstance(load, fem.AffineTraction):
+        force, point, moment = (np.asarray(value, dtype=float) for value in (load.force, load.point, load.moment))
+        return bool(force[1] == point[1] == moment[0] == moment[2] == 0.0)
+    return False

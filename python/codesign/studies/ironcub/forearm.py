@@ -27,7 +27,7 @@ from codesign.geometry.shape import (
     stepped_hole,
     union,
 )
-from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, clamp, load_cases, native_case
+from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, held_faces, load_cases, native_case
 from codesign.parts.part import Part, parameter
 from codesign.units import MILLIMETER
 
@@ -56,7 +56,6 @@ class ForearmJetSupport(Part):
     """
 
     load_variants = ("uniform", "thrust_line")
-    most_loads = 1
 
     offset: float = parameter("mm", minimum=0.0, maximum=200.0)
     length: float = parameter("mm", minimum=0.0, maximum=500.0)
@@ -244,7 +243,7 @@ class ForearmJetSupport(Part):
             settings,
             self.fem_surface(settings.geometry, settings.segments),
             self._size_field(settings),
-            [clamp(*settings.supports)],
+            held_faces(settings.supports),
             load_cases(settings, traction),
             facet_angle_deg=20.0,
         )

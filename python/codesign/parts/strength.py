@@ -1,0 +1,95 @@
+"""Strength of a part as JSON, and its confirmation: the part as analyzed beside its full geometry."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from codesign import _core, fem
+from codesign.parts.load_case import StressSettings, part_case
+
+if TYPE_CHECKING:
+    from codesign.parts.part import Part
+
+
+def part_document(mass: Any, analysis: _core.PartAnalysis) -> dict[str, Any]:
+    """Numbers of one part for JSON, SI units: those of the load case that governs, and the strength in every case.
+
+    `buckling_factor` is None if the load cannot buckle the part, `safety_factor` if it does not stress it.
+    """
+    result = analysis.result
+    optional: dict[str, Any] = {}
+    if analysis.refinements:
+        optional = {"refinements": analysis.refinements, "change": analysis.change}
+    if len(analysis.frequencies):
+        optional["first_frequency"] = float(analysis.frequencies[0])
+        optional["frequencies"] = [float(f) for f in analysis.frequencies]
+    if len(analysis.buckling_factors):
+        lowest = float(analysis.buckling_factors[0])
+        optional["buckling_factor"] = lowest if math.isfinite(lowest) else None
+    return {
+        "mass": float(mass.mass),
+        "com": [float(x) for x in mass.com],
+        "inertia": [[float(x) for x in row] for row in mass.inertia],
+        **strength_document(result),
+        "load_case": analysis.case_names[analysis.governing],
+        "cases": {
+            name: strength_document(each) | {"max_displacement": each.max_displacement, "work": each.work}
+            for name, each in zip(analysis.case_names, analysis.results, strict=True)
+        },
+        "tolerance_reached": analysis.converged,
+        **optional,
+        "max_displacement": result.max_displacement,
+        "work": result.work,
+        "nodes": len(analysis.mesh.nodes),
+        "tetrahedra": len(analysis.mesh.tets),
+        "seconds": {"mesh": analysis.mesh_seconds, "solve": analysis.solve_seconds},
+    }
+
+
+def strength_document(result: fem.StaticResult) -> dict[str, Any]:
+    """What decides the safety factor, for JSON, SI units.
+
+    `safety_factor` is None if nothing is stressed, `left_out` (the largest stress that the exclusion leaves out) if it
+    leaves out nothing. `peak_resolved` is False if the estimated error exceeds half of the peak.
+    """
+    hidden = result.left_out
+    left_out = {
+        "stress": hidden.stress,
+        "position": [float(x) for x in hidden.position],
+        "border_distance": hidden.border_distance,
+    }
+    return {
+        "safety_factor": result.safety_factor if math.isfinite(result.safety_factor) else None,
+        "peak_stress": result.peak_stress,
+        "peak_position": [float(x) for x in result.peak_position],
+        "peak_resolved": result.peak_resolved,
+        "stress_50": result.stress_50,
+        "stress_error": result.stress_error,
+        "left_out": left_out if hidden.stress > 0.0 else None,
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Confirmation:
+    """A part as the optimization analyses it beside the part as it is made; documents as of `part_document`.
+
+    confirmed: full geometry, fine mesh, refined around the peak; `tolerance_reached` says whether that was enough.
+    """
+
+    analyzed: dict[str, Any]
+    confirmed: dict[str, Any]
+
+
+def confirm(part: Part, settings: StressSettings) -> Confirmation:
+    """Analyses a part with the given settings, and its full geometry on a fine mesh until the tolerance is reached.
+
+    Raises: MeshError, SolverError, GeometryError.
+    """
+    mass = part.mass_properties()
+    full = replace(settings, geometry="full", accuracy="converged")
+    analyzed, confirmed = (
+        part_document(mass, _core.analyze_part(part_case(part, chosen))) for chosen in (settings, full)
+    )
+    return Confirmation(analyzed, confirmed)
