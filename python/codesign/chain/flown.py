@@ -37,8 +37,9 @@ Indices = NDArray[np.int64]
 class FlownLoads:
     """Loads of one placement of a part over a flight.
 
-    link: where the part sits. seed: of the flight's disturbances. time: (n,) [s]. factors: (n, units) on `load_case.unit_loads`, part axes: force
-    [N] and moment [N m] of each seat, then acceleration [m/s²] and its gradient [1/s²] at the part's origin.
+    link: where the part sits. seed: of the flight's disturbances. time: (n,) [s]. factors: (n, units) on
+    `load_case.unit_loads`, part axes: force [N] and moment [N m] of each seat, acceleration [m/s²] and its gradient
+    [1/s²] at the part's origin.
     """
 
     link: str

@@ -24,7 +24,6 @@ WORDS = {
     "ultimate_strength_mpa": "ultimate strength [MPa]",
     "fatigue_strength_mpa": "fatigue strength [MPa]",
     "fatigue_cycles": "for load cycles",
-    "cost_eur_kg": "cost [EUR/kg], about",
     "source": "source",
     "note": "note",
     "aliases": "also called",
@@ -53,12 +52,12 @@ def print_materials(name: str | None) -> None:
         if value not in (None, "", (), []):
             spread = documents[name]["ranges"].get(key)
             told = f" (published: {_span(spread)})" if spread else ""
-            table.add_row(words or name, (_span(value) if key == "cost_eur_kg" else _text(value)) + told)
+            table.add_row(words or name, _text(value) + told)
     out.print(table)
 
 
 def _print_table(materials: dict[str, KnownMaterial]) -> None:
-    columns = ("material", "E", "ν", "ρ", "yield", "ultimate", "fatigue", "EUR/kg")
+    columns = ("material", "E", "ν", "ρ", "yield", "ultimate", "fatigue")
     table = Table(box=None, pad_edge=False)
     for column in columns:
         table.add_column(column, justify="left" if column == columns[0] else "right")
@@ -67,7 +66,7 @@ def _print_table(materials: dict[str, KnownMaterial]) -> None:
             m.young_modulus_gpa, m.poisson_ratio, m.density_kg_m3, m.yield_strength_mpa, m.ultimate_strength_mpa,
             m.fatigue_strength_mpa,
         )  # fmt: skip
-        table.add_row(name, *map(_text, numbers), _span(m.cost_eur_kg))
+        table.add_row(name, *map(_text, numbers))
     out.print(table)
     out.print("E in GPa, ρ in kg/m³, strengths in MPa. codesign materials NAME: source, ranges, notes of one.")
 

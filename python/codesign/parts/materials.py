@@ -23,8 +23,7 @@ class KnownMaterial(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     """An isotropic linear elastic material with its source; None: not stated there.
 
     basis: of the strengths: "typical", or "minimum" of a standard. fatigue_strength_mpa: stress amplitude, fully
-    reversed, that smooth specimens stand for fatigue_cycles. ranges: of published figures by key. cost_eur_kg: from,
-    to, an order of magnitude.
+    reversed, that smooth specimens stand for fatigue_cycles. ranges: of published figures by key.
     """
 
     label: str
@@ -37,7 +36,6 @@ class KnownMaterial(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     ultimate_strength_mpa: Positive | None = None
     fatigue_strength_mpa: Positive | None = None
     fatigue_cycles: Positive | None = None
-    cost_eur_kg: tuple[Positive, Positive] | None = None
     ranges: dict[str, tuple[Positive, Positive]] = {}
     source: Annotated[str, Meta(min_length=1)]
     note: str = ""

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from codesign.robot.description import MOVING, RobotDescription
+from codesign.robot.description import RobotDescription
+from codesign.robot.urdf_xml import MOVING
 from codesign.transforms import Matrix, rotation_about
 
 GRAVITY = np.array([0.0, 0.0, -9.81])  # m/s², world axes; as in the flight
@@ -106,15 +107,22 @@ class MotionHistory:
             link = self.robot.joint_parent(parents[link])
         return path[::-1]
 
+    def _joint_motion(self, name: str, kind: str) -> tuple[Matrix, Matrix, Matrix]:
+        """Position, rate and acceleration (n,) of a joint; of one that mimics another, from that one."""
+        followed, multiplier, offset = self.robot.mimics.get(name, (name, 1.0, 0.0))
+        count = len(self.positions)
+        if kind not in MOVING:
+            return np.zeros(count), np.zeros(count), np.zeros(count)
+        if followed not in self.joints:
+            return np.full(count, offset), np.zeros(count), np.zeros(count)
+        column = list(self.joints).index(followed)
+        position, rate, acceleration = (v[:, column] for v in (self.positions, self.rates, self.accelerations))
+        return multiplier * position + offset, multiplier * rate, multiplier * acceleration
+
     def _child(self, name: str, parent: RigidMotion) -> RigidMotion:
         joint = self.robot.joint(name)
         origin = self.robot.joint_origin(name)
-        moved = name in self.joints and joint.type in MOVING
-        column = list(self.joints).index(name) if moved else 0
-        position, rate, acceleration = (
-            values[:, column] if moved else np.zeros(len(self.positions))
-            for values in (self.positions, self.rates, self.accelerations)
-        )
+        position, rate, acceleration = self._joint_motion(name, joint.type)
         frame = parent.rotation @ origin[:3, :3]
         axis = np.zeros(3) if joint.axis is None else np.asarray(joint.axis, dtype=float)
         axis = axis / (np.linalg.norm(axis) or 1.0)

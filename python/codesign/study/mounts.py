@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from codesign.errors import UrdfError
-from codesign.robot.description import MOVING, RobotDescription
+from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
+from codesign.robot.urdf_xml import MOVING
 from codesign.transforms import Matrix, inverse
 
 PROPELLER_NAMES = re.compile(r"(?<![a-z])(rotor|prop(eller)?|jet|turbine|thruster|edf)(?![a-z])", re.IGNORECASE)
