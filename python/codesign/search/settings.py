@@ -50,8 +50,8 @@ class Settings:
             raise ValueError(f"population = {self.population}: at least 2 is needed")
         for name in ("evaluations", "lag", "wall_time", "stall_generations"):
             value = getattr(self, name)
-            if value is not None and value <= 0:
-                raise ValueError(f"{name} = {value}: must be above 0")
+            if value is not None and not 0 < value < math.inf:
+                raise ValueError(f"{name} = {value}: must be above 0 and finite")
         for name in ("crossover_probability", "mutation_probability"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise ValueError(f"{name} = {getattr(self, name)}: must be in 0 … 1")

@@ -134,7 +134,8 @@ def compare_runs(runs: Sequence[Run]) -> list[dict[str, Any]]:
     Raises: StoreError if their objectives differ.
     """
     if len({run.objectives for run in runs}) > 1:
-        raise StoreError("these runs minimize different objectives: they cannot be compared")
+        of = "; ".join(f"{run.out}: {', '.join(run.objectives)}" for run in runs)
+        raise StoreError(f"these runs have different objectives and cannot be compared: {of}")
     fronts = [objective_rows((record.evaluation for record in run.front), run.objectives) for run in runs]
     everything = [objective_rows(run.evaluations, run.objectives) for run in runs]
     together = [values for values in everything if len(values)]

@@ -38,6 +38,9 @@ def test_help_has_an_example(command):
         (("validate", "absent"), "absent"),
         (("view",), "either the folder of a run or a design"),
         (("optimize", "--color", "red"), "--color"),
+        (("resume", "absent", "--evaluations", "-5"), "greater than or equal to 1"),
+        (("runs", "absent"), "absent: there is no such folder"),
+        (("runs", "."), "holds no run"),
     ],
 )
 def test_bad_input_is_exit_code_2_and_says_why(arguments, message, tmp_path):

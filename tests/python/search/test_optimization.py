@@ -186,6 +186,8 @@ def test_evaluates_listed_designs(tmp_path) -> None:
         ({"start": "best"}, "start"),
         ({"population": 1}, "population"),
         ({"lag": -1}, "lag"),
+        ({"wall_time": float("nan")}, "wall_time"),
+        ({"wall_time": float("inf")}, "wall_time"),
     ],
 )
 def test_wrong_settings_are_refused_before_anything_is_written(tmp_path, settings, message) -> None:

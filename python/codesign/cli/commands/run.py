@@ -21,7 +21,7 @@ from codesign.cli.options import (
     StudyOption,
     WorkersOption,
 )
-from codesign.errors import StudyError
+from codesign.errors import StoreError, StudyError
 
 if TYPE_CHECKING:
     from codesign.search.optimization import Resources
@@ -51,7 +51,7 @@ def optimize(
     steady: Annotated[bool, typer.Option(help="Offspring without waiting for whole generations.")] = False,
     wall_time: Annotated[float | None, typer.Option(help="Seconds after which no new design is tried.")] = None,
     stall_generations: Annotated[
-        int | None, typer.Option(help="Stop after so many generations without gain of hypervolume.")
+        int | None, typer.Option(min=1, help="Stop after so many generations without gain of hypervolume.")
     ] = None,
     no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
@@ -96,7 +96,7 @@ def resume(
     run_dir: RunArgument,
     workers: WorkersOption = None,
     cluster: ClusterOption = None,
-    evaluations: Annotated[int | None, typer.Option(help="A larger budget than the run had.")] = None,
+    evaluations: Annotated[int | None, typer.Option(min=1, help="A larger budget than the run had.")] = None,
     as_json: JsonOption = False,
 ) -> int:
     """Continues an interrupted run, as if it had never stopped."""
@@ -121,18 +121,25 @@ def runs_command(
     """Lists the runs in a folder, or compares their fronts."""
     from codesign.storage.runs import compare_runs, find_runs, list_runs, load_run
 
-    rows = compare_runs([load_run(run) for run in find_runs(folder)]) if compare else list_runs(folder)
+    found = list(find_runs(folder))
+    if not found:
+        raise StoreError(f"{folder}: holds no run" if folder.is_dir() else f"{folder}: there is no such folder")
+    rows = compare_runs([load_run(run) for run in found]) if compare else list_runs(folder)
     if as_json:
         print_json(rows)
         return 0
+    last = ("non_dominated",) if compare else ("seconds", "outcome")
+    columns = ("run", "study", "algorithm", "seed", "designs", "front", "hypervolume", *last)
     table = Table()
-    columns = ("run", "study", "algorithm", "seed", "designs", "front", "hypervolume", "seconds", "outcome")
     for name in columns:
-        table.add_column(name)
+        table.add_column(name, overflow="fold")
     for row in rows:
-        values = [row.get(name, "") for name in columns]
+        values = ["" if (value := row.get(name)) is None else value for name in columns]
         table.add_row(*(f"{v:.5g}" if isinstance(v, float) else str(v) for v in values))
     out.print(table)
+    for row in rows:
+        if "error" in row:
+            err.print(f"{row['run']}: {row['error']}", soft_wrap=True)
     return 0
 
 
