@@ -2,9 +2,10 @@
 # make test   set up what is missing, check the sources, run ctest and pytest
 # make help   everything else
 .DEFAULT_GOAL := help
-.PHONY: help setup run check test test-lowest test-consumers coverage lock format stubs colcon clean
+.PHONY: help setup run check test test-lowest test-consumers coverage lock format stubs colcon docs wheel clean
 
 PYTHON ?= python3
+PYTHONS ?= $(PYTHON)
 SHELL := /bin/bash
 VENV := .venv
 BIN := $(VENV)/bin
@@ -33,6 +34,8 @@ help:
 	@echo 'make stubs  regenerate python/codesign/_core/*.pyi'
 	@echo 'make format apply clang-format and ruff'
 	@echo 'make colcon build and install as a colcon package into build/colcon'
+	@echo 'make docs   build/docs: the documentation as a site; a warning or a broken link is an error'
+	@echo 'make wheel  dist: wheels that need no compiler, for PYTHONS=$(PYTHONS)'
 	@echo 'make clean  delete build/ and $(VENV)'
 
 # --- set-up: each step leaves a stamp and is not done again; files in $(VENV) and build/ hold the folder's path, so a
@@ -108,6 +111,15 @@ format: $(VENV)/test.stamp
 colcon: $(VENV)/test.stamp
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/colcon --log-base build/colcon/log build --base-paths . \
 	  --build-base build/colcon/build --install-base build/colcon/install
+
+docs: setup
+	$(INSTALL) --requirement <($(BIN)/python scripts/dependencies.py docs)
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
+	@echo build/docs/index.html
+
+wheel: setup
+	$(INSTALL) --requirement <($(BIN)/python scripts/dependencies.py wheel)
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python scripts/make_wheel.py --python $(PYTHONS)
 
 clean:
 	rm -rf build $(VENV)

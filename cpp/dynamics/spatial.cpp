@@ -67,7 +67,7 @@ Matrix3d rpy_to_rotation(const Vector3d& rpy) {
 }
 
 Vector3d rotation_to_rpy(const Matrix3d& R) {
-  const double cos_pitch = std::hypot(R(2, 1), R(2, 2));
+  const double cos_pitch = std::sqrt(R(2, 1) * R(2, 1) + R(2, 2) * R(2, 2));
   const double pitch = std::atan2(-R(2, 0), cos_pitch);
   constexpr double kGimbalLock = 1e-12;
   if (cos_pitch < kGimbalLock) return {0.0, pitch, std::atan2(-R(0, 1), R(1, 1))};

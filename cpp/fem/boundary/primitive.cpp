@@ -158,7 +158,7 @@ double Primitive::distance(const Eigen::Vector3d& x) const {
   if (type == SurfaceType::plane) return r.dot(axis);
   if (type == SurfaceType::sphere) return r.norm() - radius;
   const double z = r.dot(axis), rho = (r - z * axis).norm();
-  return (rho - radius - slope * z) / std::hypot(1.0, slope);
+  return (rho - radius - slope * z) / std::sqrt(1.0 + slope * slope);
 }
 
 Eigen::Vector3d Primitive::normal(const Eigen::Vector3d& x) const {

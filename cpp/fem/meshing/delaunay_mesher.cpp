@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -37,6 +38,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 Vector3d to_vector(const Point& p) { return {p.x(), p.y(), p.z()}; }
 Point to_point(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
+// What the concept's optional indices are.
+#if CGAL_VERSION_MAJOR >= 6
+template <class T>
+using Optional = std::optional<T>;
+#else
+template <class T>
+using Optional = boost::optional<T>;
+#endif
+
 // CGAL's concept MeshDomainWithFeatures_3. Indices are plain integers: patches from 1, curves and
 // corners by their position in the lists; the only subdomain is 1.
 class SolidDomain {
@@ -55,8 +65,8 @@ class SolidDomain {
   using Surface_patch_index = int;
   using Curve_index = int;
   using Corner_index = int;
-  using Subdomain = boost::optional<int>;
-  using Surface_patch = boost::optional<int>;
+  using Subdomain = Optional<int>;
+  using Surface_patch = Optional<int>;
   using Intersection = std::tuple<Point, int, int>;  // point, patch, dimension (0: none)
 
   SolidDomain(const SurfaceMesh& surface, const Patches& patches,
@@ -147,6 +157,15 @@ class SolidDomain {
   FT curve_segment_length(const Point& p, const Point& q, int curve,
                           CGAL::Orientation orientation) const {
     return asked(curve).length_between(to_vector(p), to_vector(q), orientation == CGAL::POSITIVE);
+  }
+  // Positive in the direction of the curve; on a loop of the shorter way. Asked for from CGAL 6 on.
+  FT signed_geodesic_distance(const Point& p, const Point& q, int curve) const {
+    const FeatureCurve& line = asked(curve);
+    const Vector3d from = to_vector(p), to = to_vector(q);
+    if (!line.is_closed()) return line.position(to) - line.position(from);
+    const double forward = line.length_between(from, to, true);
+    const double backward = line.length_between(from, to, false);
+    return forward < backward ? forward : -backward;
   }
   Point construct_point_on_curve(const Point& p, int curve, FT distance) const {
     return to_point(asked(curve).point_at(to_vector(p), distance));
@@ -347,9 +366,9 @@ LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
     control.maximal_number_of_vertices = options.max_vertices;
     control.pointer_to_error_code = &error;
     start_complex(surface, patches, domain, criteria, control, attempt.seed_shells, watch, complex);
-    CGAL::refine_mesh_3(complex, domain, criteria, set::no_exude(), set::no_perturb(),
-                        set::no_odt(), set::no_lloyd(), set::no_reset_c3t3(), control,
-                        set::non_manifold());
+    // Without exudation, perturbation, Odt, Lloyd and reset: what refine_mesh_3 calls, whose
+    // named parameters do not take `control` from CGAL 6 on.
+    CGAL::refine_mesh_3_impl(complex, domain, criteria, false, false, false, false, false, control);
     if (error == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED)
       watch.report(MeshWatch::Limit::vertices, size, points_of(complex));
     if (complex.number_of_cells_in_complex() == 0) throw MeshBreakdown("the mesh is empty");

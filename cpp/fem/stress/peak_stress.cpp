@@ -179,7 +179,7 @@ double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
                             ? recovery_spread_inside(mesh, points, peak.element, peak.position)
                             : recovery_spread(mesh, points, peak.triangle, peak.reference);
   const double x = (spread + kShare * largest) / peak.value;
-  return (std::hypot(kFloor, kSlope * x) + kCoarse * x * x * x) * peak.value;
+  return (std::sqrt(kFloor * kFloor + kSlope * kSlope * x * x) + kCoarse * x * x * x) * peak.value;
 }
 
 }  // namespace codesign::fem

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from codesign.problem.protocols import PartCache, Rival
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study(StudyData):
     """What a study defines, and the chain that evaluates its designs."""
 

@@ -16,7 +16,7 @@ from codesign.storage.records import Generation, Record
 from codesign.storage.store import RunStore
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Run:
     """A run as stored: read once, then independent of the file."""
 
@@ -29,6 +29,10 @@ class Run:
     generations: list[Generation]
     sessions: list[dict[str, Any]]
     counts: dict[str, int]
+
+    def __repr__(self) -> str:
+        name = self.study.get("name", "study")
+        return f"<Run {str(self.out)!r} of {name}: {len(self.search_records)} designs, {len(self.front)} on the front>"
 
     @property
     def search_records(self) -> list[Record]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,7 @@ from codesign.study.conversion import convert, replace_value
 from codesign.study.fingerprint import part_identity
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StudyData:
     """Everything that defines a study. Immutable; `codesign.study.loading.load` makes and checks it.
 
@@ -37,6 +38,11 @@ class StudyData:
     functions: dict[str, Callable[[Mapping[str, Any]], float]]
     base_robot: RobotDescription
     identity: Identity
+
+    def __repr__(self) -> str:
+        objectives = ", ".join(self.objectives)
+        designs = math.prod(self.space.levels)
+        return f"<{type(self).__name__} {self.name!r}: {designs:,} designs, minimizes {objectives}>"
 
     @functools.cached_property
     def hash(self) -> str:
