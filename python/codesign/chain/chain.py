@@ -77,6 +77,14 @@ def evaluate_with_fields(
     return evaluation, dict(zip(evaluation.parts, result.parts, strict=True)), flight
 
 
+def fly_design(study: StudyData, design: Design) -> dyn.FlightLog | None:
+    """The flight of a design on the study's own trajectory (the first of several seeds); None: the study has none."""
+    config = study.configured(design)
+    if config.flight is None:
+        return None
+    return compute(study, config, [], build_robot(study, design), None).flights[0]
+
+
 def _check_trajectory(config: StudyConfig, trajectory: str | None) -> None:
     """Raises: StudyError: there is no such trajectory, or one is named where nothing flies."""
     trajectory, _ = split_sample(trajectory)

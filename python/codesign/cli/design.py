@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from codesign import _core, fem
-from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields, stress_settings
+from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields, fly_design, stress_settings
 from codesign.cli.export_folder import MANIFEST, export_folder, files_in
 from codesign.cli.export_formats import CAD, DEFAULT, LOG, ROBOT
 from codesign.cli.order import Order
@@ -25,9 +25,13 @@ from codesign.parts.load_case import part_case
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignValue, value_text
 from codesign.report.study_words import part_words
+from codesign.storage.cache import default_cache_path, open_cache
+from codesign.storage.designs import keep_evaluation, known_evaluation
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
+    from codesign.dynamics import FlightLog
+    from codesign.problem.evaluation import Evaluation
 
 
 def export_design(
@@ -61,7 +65,7 @@ def export_design(
     )
     with export_folder(out, order.revision, force) as folder:
         with native_threads(1) as beside:  # the native chain releases the interpreter's lock
-            chain = beside.submit(evaluate_with_fields, study, design)
+            chain = beside.submit(_computed, study, design, formats)
             _write_cad(order, folder / "cad")
             evaluation, analyses, flight = chain.result()
         if flight is not None and any(kind in formats for kind in (*ROBOT, *LOG)):
@@ -80,6 +84,21 @@ def export_design(
         files = [str(path.relative_to(folder)) for path in files_in(folder)] + [MANIFEST]
         write_text(folder / MANIFEST, order.manifest(evaluation, models, files))
     return [out / file for file in sorted(files)]
+
+
+def _computed(
+    study: Study, design: Design, formats: Sequence[str]
+) -> tuple[Evaluation, dict[str, _core.PartAnalysis], FlightLog | None]:
+    """What the files are made of. Stress fields are computed for `vtu` only: numbers of a known design are cached."""
+    grid = study.space.indices(design)
+    with open_cache(default_cache_path(study.name), study.identity.program) as cache:
+        known = None if "vtu" in formats else known_evaluation(study, grid, cache)
+        if known is not None:
+            wanted = any(kind in formats for kind in (*ROBOT, *LOG))
+            return known, {}, fly_design(study, design) if wanted else None
+        evaluation, analyses, flight = evaluate_with_fields(study, design)
+        keep_evaluation(study, grid, evaluation, cache)
+        return evaluation, analyses, flight
 
 
 def design_of_run(run_directory: Path, selector: str) -> tuple[Study, dict[str, DesignValue], str]:

@@ -12,6 +12,8 @@ from codesign.chain.chain import evaluate_with_fields
 from codesign.chain.flight import joint_names
 from codesign.problem.design_space import DesignValue
 from codesign.report.details import Detail, FlightHistory, StressField, flight_history
+from codesign.storage.cache import default_cache_path, open_cache
+from codesign.storage.designs import keep_evaluation
 
 
 def compute_detail(study: Any, theta: Mapping[str, DesignValue], trajectory: str | None = None) -> Detail:
@@ -21,6 +23,9 @@ def compute_detail(study: Any, theta: Mapping[str, DesignValue], trajectory: str
     """
     design = study.space.design(theta)
     evaluation, analyses, flight = evaluate_with_fields(study, design, trajectory)
+    own = trajectory in (None, study.config.flown.trajectory if study.config.flight is not None else None)
+    with open_cache(default_cache_path(study.name), study.identity.program) as cache:
+        keep_evaluation(study, study.space.indices(design), evaluation, cache, "" if own else str(trajectory))
     fields = {name: stress_field(analysis.mesh, analysis.result) for name, analysis in analyses.items()}
     if flight is None:
         return Detail(evaluation, fields, None)

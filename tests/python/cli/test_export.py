@@ -177,6 +177,18 @@ def test_only_the_formats_asked_for(tmp_path: Path) -> None:
         assert absent not in page
 
 
+def test_known_numbers_are_not_computed_again_where_no_field_is_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, design = load_study("gimbal_quad"), {"reach": 210, "height": 30}
+    export_design(study, design, tmp_path / "first", formats=("stl", "urdf"))
+    monkeypatch.setattr("codesign.cli.design.evaluate_with_fields", None)
+    export_design(study, design, tmp_path / "second", formats=("stl", "urdf", "csv"))
+    first, second = ((tmp_path / name / "evaluation.json").read_text() for name in ("first", "second"))
+    assert first == second
+    assert (tmp_path / "second" / "robot" / "flight.csv").is_file()
+
+
 def test_a_part_without_a_place_is_made_once() -> None:
     study = load_study("ironcub")
     bracket, forearm = study.config.parts
