@@ -41,7 +41,7 @@ def copy(tmp_path):
 
 
 def test_shipped_studies_load():
-    assert shipped_studies() == ["gimbal_quad", "hexarotor", "ironcub", "ironcub_paper"]
+    assert shipped_studies() == ["gimbal_quad", "hexarotor", "ironcub", "ironcub_paper", "ironcub_strength"]
     for name in shipped_studies():
         assert load_study(name).baseline is not None
 
@@ -114,7 +114,7 @@ def test_wrong_studies_are_refused_with_file_key_and_reason(copy, old, new, mess
 
 
 def test_missing_study_names_the_shipped_ones():
-    with pytest.raises(StudyError, match="shipped studies: gimbal_quad, hexarotor, ironcub, ironcub_paper"):
+    with pytest.raises(StudyError, match="shipped studies: gimbal_quad, hexarotor, ironcub, ironcub_paper, ironcub_strength"):
         load_study("nowhere")
 
 
