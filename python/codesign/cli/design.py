@@ -146,7 +146,14 @@ def _write_cad(order: Order, folder: Path) -> None:
     wanted = [kind for kind in CAD if kind in order.formats]
     if wanted:
         organization = order.organization or order.study.title
-        export_parts(order.components, folder, revision=order.revision, organization=organization, formats=wanted)
+        export_parts(
+            order.components,
+            folder,
+            revision=order.revision,
+            organization=organization,
+            formats=wanted,
+            captions=order.captions() if {"pdf", "dxf"} & set(wanted) else None,
+        )
 
 
 def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnalysis, folder: Path) -> str:

@@ -8,18 +8,24 @@ from collections.abc import Collection
 from codesign.errors import ExportError, LibraryError
 from codesign.names import nearest
 
-CAD = ("stl", "step", "3mf", "glb")
+CAD = ("stl", "step", "3mf", "glb", "pdf", "dxf")
 ROBOT = ("urdf", "mjcf", "sdf")
 LOG = ("csv", "parquet", "mcap")
 FORMATS = (*CAD, *ROBOT, *LOG, "vtu")
-DEFAULT = (*CAD, "urdf", "vtu")
+DEFAULT = ("stl", "step", "3mf", "glb", "pdf", "urdf", "vtu")
 SHORT = {"log": ("csv", "parquet"), "all": FORMATS}
-LIBRARIES = {"parquet": ("pyarrow", "analysis"), "mcap": ("rosbags", "log")}  # format -> module, extra that has it
+LIBRARIES = {
+    "dxf": ("ezdxf", "drawing"),
+    "parquet": ("pyarrow", "analysis"),
+    "mcap": ("rosbags", "log"),
+}  # format -> module, extra that has it
 UNITS = {
     "cad/*.stl": ("mm", ("stl",)),
     "cad/*.step": ("mm", ("step",)),
     "cad/parts.3mf": ("mm", ("3mf",)),
     "cad/assembly.glb": ("m", ("glb",)),
+    "cad/*.pdf": ("mm; A3, first angle", ("pdf",)),
+    "cad/*.dxf": ("mm; A3, first angle", ("dxf",)),
     "robot/*": ("m, kg, rad; meshes mm, scaled where they are named", ROBOT),
     "robot/flight.*": ("SI; the unit of each column in its name", LOG),
     "stress/*.vtu": ("m, Pa", ("vtu",)),

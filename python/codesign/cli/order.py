@@ -25,6 +25,7 @@ from codesign.units import MEGA
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
+    from codesign.parts.drawing import Caption
 
 STRESS_FILES = (
     "In `stress/*.vtu`, the peak stress is read where `counts_for_peak` is 1; the strings in the field data say what "
@@ -44,7 +45,10 @@ LICENSE = (
     "The license of codesign covers the program, not what is designed with it: the parts belong to the author of the "
     "study, and so does the choice of their license."
 )
-OPEN = "tolerances, fits, threads, surface finish, heat treatment and coating: these files do not state them"
+OPEN = (
+    "threads, surface finish, heat treatment and coating: these files do not state them; tolerances are ISO 2768-mK "
+    "where no fit is given"
+)
 
 
 @dataclass(frozen=True)
@@ -79,6 +83,29 @@ class Order:
         """Design values with their units."""
         units = {variable.name: variable.unit for variable in self.study.space.variables}
         return {name: {"value": value, "unit": units[name]} for name, value in self.design.items()}
+
+    def captions(self) -> dict[str, Caption]:
+        """What the drawing of each part says beside its geometry."""
+        from codesign.parts.drawing import Caption  # loads OpenCASCADE
+
+        units = self.values
+        design = ", ".join(f"{name} = {value_text(value)} {units[name]['unit']}" for name, value in self.design.items())
+        return {
+            part.name: Caption(
+                part.name,
+                part.title,
+                self._config(part).material,
+                part.mass_properties().mass,
+                part.density,
+                self.quantities[part.name],
+                design,
+                self.revision,
+                f"{part.name}.step",
+                self.organization or self.study.title,
+                tuple(part.fits().items()),
+            )
+            for part in distinct_parts(self.components)
+        }
 
     def manifest(self, evaluation: Evaluation, models: Mapping[str, str], files: Sequence[str]) -> str:
         """Everything a reader or a program needs to know about the files, as JSON; SI units."""
@@ -123,6 +150,7 @@ class Order:
             "mass_total_kg": f"{count * mass:.6g}",
             "step": self._file(part, "step"),
             "stl": self._file(part, "stl"),
+            "drawing": self._file(part, "pdf"),
             "revision": self.revision,
         }
 
@@ -146,7 +174,7 @@ class Order:
         for part in distinct_parts(self.components):
             mirror = f"mirror image of {_original(part).name}" if isinstance(part, MirroredPart) else ""
             mass = f"{part.mass_properties().mass:.4g} kg"
-            files = ", ".join(f"`{file}`" for kind in ("step", "stl") if (file := self._file(part, kind)))
+            files = ", ".join(f"`{file}`" for kind in ("pdf", "step", "stl") if (file := self._file(part, kind)))
             parts.append(
                 [part.name, self.quantities[part.name], self._material_words(part), mass, mirror, files],
             )

@@ -12,10 +12,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepGProp import BRepGProp
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.collections import Sequence_TDF_Label
 from OCP.GeomAbs import GeomAbs_SurfaceType
 from OCP.GProp import GProp_GProps
@@ -35,13 +33,13 @@ from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from codesign._core.fem import SurfaceMesh
-from codesign.errors import MeshError
+from codesign.errors import GeometryError, MeshError
 from codesign.geometry.occt import silent
+from codesign.geometry.triangulate import triangulate
 from codesign.units import MILLIMETER
 
 CHORD = 3e-5  # m: triangles stay this near to the exact faces
 ANGLE = 0.35  # rad between neighboring chords of a curve: 18 on a full circle at least
-MERGE = 1e-6  # mm: points of neighboring faces this close are one
 KINDS = {
     GeomAbs_SurfaceType.GeomAbs_Plane: "plane",
     GeomAbs_SurfaceType.GeomAbs_Cylinder: "cylinder",
@@ -104,11 +102,21 @@ def load_step(path: str | os.PathLike[str], *, solid: str | None = None, chord: 
     described = tuple(
         _describe(i + 1, face, _of_same(names, face) or "", _of_same(colors, face)) for i, face in enumerate(faces)
     )
-    points, triangles, owner = _triangulate(shape, faces, chord / MILLIMETER)
+    try:
+        points, triangles, owner = triangulate(shape, faces, chord / MILLIMETER, ANGLE)
+    except GeometryError as error:
+        raise MeshError(f"{path}: {error}") from error
     labels = list(dict.fromkeys(face.name for face in described))
     index = np.array([labels.index(face.name) for face in described])
     surface = SurfaceMesh(points * MILLIMETER, triangles, index[owner].tolist(), labels)
     return StepPart(name, surface, described, owner)
+
+
+def read_solid(path: str | os.PathLike[str], solid: str | None = None) -> tuple[TopoDS_Shape, dict[int, str]]:
+    """One exact solid of a STEP file in mm, and the names of its faces by their place in it; errors as `load_step`."""
+    _, shape, names, _ = _chosen(list(_solids(_read(Path(path)))), solid, Path(path))
+    faces = _explore(shape, TopAbs_ShapeEnum.TopAbs_FACE)
+    return shape, {number: _of_same(names, face) or "" for number, face in enumerate(faces)}
 
 
 def _read(path: Path) -> TDocStd_Document:
@@ -207,42 +215,6 @@ def _describe(number: int, face: TopoDS_Face, name: str, color: str | None) -> S
         properties.Mass() * MILLIMETER**2,
         color,
     )
-
-
-def _triangulate(
-    shape: TopoDS_Shape, faces: list[TopoDS_Face], chord: float
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64]]:
-    """Points (n, 3) [mm], triangles (m, 3) counter-clockwise from outside, face of each triangle (m,)."""
-    BRepMesh_IncrementalMesh(shape, chord, False, ANGLE, False)
-    points: list[NDArray[np.float64]] = []
-    triangles: list[NDArray[np.int64]] = []
-    owner: list[NDArray[np.int64]] = []
-    count = 0
-    for index, face in enumerate(faces):
-        location = TopLoc_Location()
-        mesh = BRep_Tool.Triangulation_s(face, location)
-        if mesh is None:
-            raise MeshError(f"face {index + 1} of the STEP file cannot be triangulated: it is degenerate or damaged")
-        move = location.Transformation()
-        nodes = [mesh.Node(i + 1).Transformed(move) for i in range(mesh.NbNodes())]
-        corners = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())], dtype=np.int64) - 1
-        if face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED:
-            corners = corners[:, ::-1]
-        points.append(np.array([(p.X(), p.Y(), p.Z()) for p in nodes]))
-        triangles.append(corners + count)
-        owner.append(np.full(len(corners), index))
-        count += len(nodes)
-    return _merged(np.vstack(points), np.vstack(triangles), np.concatenate(owner))
-
-
-def _merged(
-    points: NDArray[np.float64], triangles: NDArray[np.int64], owner: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64]]:
-    """One point where faces meet; triangles that shrink to an edge (poles) are dropped."""
-    _, first, inverse = np.unique(np.round(points / MERGE), axis=0, return_index=True, return_inverse=True)
-    joined = inverse.ravel()[triangles]
-    whole = (joined[:, 0] != joined[:, 1]) & (joined[:, 1] != joined[:, 2]) & (joined[:, 2] != joined[:, 0])
-    return points[first], joined[whole].astype(np.int32), owner[whole]
 
 
 def _explore(shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> Iterator[TopoDS_Shape]:

@@ -29,6 +29,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Wire
 
 from codesign.errors import GeometryError
+from codesign.geometry.exact import Exact
 from codesign.geometry.profile import FULL_TURN, Loop
 from codesign.geometry.shape import Difference, Extrusion, Frame, Intersection, Moved, Revolution, Shape, Triple, Union
 
@@ -119,6 +120,8 @@ def _evaluate(shape: Shape) -> Brep:
         for other in others:
             result = _boolean(BRepAlgoAPI_Common(), [result], [other])
         return result
+    if isinstance(shape, Exact):
+        return Brep(shape.solid, shape.named_faces)
     raise TypeError(f"{type(shape).__name__} is not a shape of the part language")
 
 

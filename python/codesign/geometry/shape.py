@@ -253,4 +253,6 @@ def face_names(shape: Shape) -> tuple[str, ...]:
         names += [name for part in (shape.base, *shape.tools) for name in face_names(part)]
     elif isinstance(shape, Union | Intersection):
         names += [name for part in shape.shapes for name in face_names(part)]
+    else:
+        names += getattr(shape, "names", ())  # an imported solid's
     return tuple(dict.fromkeys(name for name in names if name))

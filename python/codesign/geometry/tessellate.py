@@ -25,11 +25,14 @@ class PrimitiveMesh:
 
 
 def tessellate(primitive: Shape, resolution: Resolution) -> PrimitiveMesh:
-    """Mesh of an extrusion or a revolution in the coordinates it is written in."""
+    """Mesh of an extrusion, a revolution or an imported solid in the coordinates it is written in."""
     if isinstance(primitive, Extrusion):
         return _extrusion(primitive, resolution)
     if isinstance(primitive, Revolution):
         return _revolution(primitive, resolution)
+    if hasattr(primitive, "mesh"):
+        mesh: PrimitiveMesh = primitive.mesh(resolution)
+        return mesh
     raise TypeError(f"{type(primitive).__name__} is not a primitive")
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 
 from codesign.errors import LibraryError
+from codesign.geometry.exact import imported
+from codesign.parts.imported_file import imported_file
 from codesign.parts.part import MirroredPart, Part, parameter
 
-__all__ = ["MirroredPart", "Part", "parameter", "write_step"]
+__all__ = ["MirroredPart", "Part", "imported", "imported_file", "parameter", "write_step"]
 
 
 def write_step(part: Part, path: str | os.PathLike[str], schema: str = "AP242") -> None:

@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import Any, ClassVar
 
 from codesign.errors import GeometryError
+from codesign.geometry.exact import exact_moments, has_exact
 from codesign.geometry.mass import MassProperties, extrapolate, mass_properties, settled, volume_moments
 from codesign.geometry.mesh_files import write_stl
 from codesign.geometry.profile import Resolution, Vector
@@ -86,6 +87,10 @@ class Part(ABC):
 
     def interfaces(self) -> dict[str, Vector]:
         """Frames at which other bodies are attached: name -> part_T_interface (4, 4) [m]; z points out of the part."""
+        return {}
+
+    def fits(self) -> dict[float, str]:
+        """Fits of bores: diameter [mm] -> class of ISO 286, as `H7`; written into the STEP file and on the drawing."""
         return {}
 
     def check(self) -> None:  # noqa: B027 (most parts need no more than the ranges of their parameters)
@@ -168,6 +173,10 @@ class MirroredPart(Part):
         """As the original."""
         return self.original.through_holes()
 
+    def fits(self) -> dict[float, str]:
+        """As the original."""
+        return self.original.fits()
+
     def solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
         """The mirror image of the original's mesh."""
         return self.original.solid(resolution).mirrored(self.axis)
@@ -190,7 +199,9 @@ def _solid(part: Part, resolution: Resolution) -> Solid:
 
 @lru_cache(maxsize=64)
 def _moments(part: Part) -> Vector:
-    """Volume moments (10,) in mm of the true curved solid; a round part needs a third mesh."""
+    """Volume moments (10,) in mm of the true curved solid; a round part needs a third mesh, an imported one none."""
+    if has_exact(part.shape()):
+        return exact_moments(part.shape())
     coarse, fine = (_mesh_moments(part, refine) for refine in (1, 2))
     return extrapolate(coarse, fine, None if settled(coarse, fine) else _mesh_moments(part, 4))
 

@@ -11,6 +11,7 @@ from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.gp import gp_Trsf
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
 from OCP.StepBasic import StepBasic_ProductDefinitionFormation
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
 from OCP.STEPConstruct import STEPConstruct
@@ -22,7 +23,7 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
-from OCP.XCAFDoc import XCAFDoc_DocumentTool
+from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
 
 from codesign import __version__
 from codesign.errors import GeometryError
@@ -33,8 +34,11 @@ from codesign.geometry.profile import Vector
 from codesign.geometry.shape import reflection
 from codesign.parts.component import Component, distinct_parts
 from codesign.parts.part import MirroredPart, Part
+from codesign.parts.pmi import add_tolerances
 from codesign.units import MILLIMETER
 
+BODY = (170, 176, 184)
+PALETTE = ((61, 122, 199), (199, 92, 41), (64, 150, 96), (158, 84, 163), (196, 160, 44), (74, 160, 170))
 SCHEMAS = {"AP214": "AP214IS", "AP242": "AP242DIS"}
 
 
@@ -68,9 +72,16 @@ def write_step(
     brep: Brep | None = None,
     origin: Origin = Origin(),
 ) -> None:
-    """One part as a solid with its name and the names of its faces. `brep`: its exact solid, if already built."""
+    """One part as a solid with its name, the names and colors of its faces; `brep`: its exact solid, if already built.
+
+    In AP242 with tolerances that programs read: diameters of bores with the part's `fits`, flatness of named faces.
+    """
     document = _Document()
-    document.add_part(part.name, brep or part_breps([part])[part])
+    solid = brep or part_breps([part])[part]
+    product = document.add_part(part.name, solid)
+    document.add_colors(product, solid)
+    if schema == "AP242":
+        document.add_tolerances(product, solid, part.fits())
     document.write(path, schema, origin)
 
 
@@ -107,6 +118,24 @@ class _Document:
         for face, face_name in brep.named_faces:
             _set_name(self._shapes.AddSubShape(label, face), face_name)
         return label
+
+    def add_colors(self, product: TDF_Label, brep: Brep) -> None:
+        """A color for the solid and one for each name of its faces, for programs that read colors but no names."""
+        tool = XCAFDoc_DocumentTool.ColorTool_s(self._document.Main())
+        tool.SetColor(product, _color(BODY), XCAFDoc_ColorType.XCAFDoc_ColorSurf)
+        names = list(dict.fromkeys(name for _, name in brep.named_faces))
+        for face, name in brep.named_faces:
+            color = _color(PALETTE[names.index(name) % len(PALETTE)])
+            tool.SetColor(self._face(product, face), color, XCAFDoc_ColorType.XCAFDoc_ColorSurf)
+
+    def add_tolerances(self, product: TDF_Label, brep: Brep, fits: Mapping[float, str]) -> None:
+        """Semantic tolerances, as `pmi.add_tolerances` says."""
+        add_tolerances(self._document, product, brep, fits, lambda face: self._face(product, face))
+
+    def _face(self, product: TDF_Label, face: TopoDS_Shape) -> TDF_Label:
+        """Label of a face, made if it has none."""
+        found = TDF_Label()
+        return found if self._shapes.FindSubShape(product, face, found) else self._shapes.AddSubShape(product, face)
 
     def add_assembly(self, name: str, components: Sequence[tuple[str, TDF_Label, Vector]]) -> None:
         """A product made of placed products; poses in meters."""
@@ -148,6 +177,10 @@ class _Document:
         finder = writer.ChangeWriter().WS().TransferWriter().FinderProcess()
         for solid, name in self._solids:
             STEPConstruct.FindEntity_s(finder, solid).SetName(TCollection_HAsciiString(name))
+
+
+def _color(rgb: tuple[int, int, int]) -> Quantity_Color:
+    return Quantity_Color(*(value / 255.0 for value in rgb), Quantity_TypeOfColor.Quantity_TOC_sRGB)
 
 
 def _set_revision(writer: STEPCAFControl_Writer, revision: str) -> None:

@@ -1,5 +1,6 @@
 """STEP files: read back with OpenCASCADE and with gmsh; silence; nothing half-written."""
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,13 +20,23 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopoDS import TopoDS
 from OCP.XCAFApp import XCAFApp_Application
-from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+from OCP.XCAFDimTolObjects import XCAFDimTolObjects_DimensionType, XCAFDimTolObjects_GeomToleranceType
+from OCP.XCAFDoc import (
+    XCAFDoc_Dimension,
+    XCAFDoc_DocumentTool,
+    XCAFDoc_GeomTolerance,
+    XCAFDoc_ShapeTool,
+)
 
+from codesign.errors import GeometryError
+from codesign.fem.step import load_step
 from codesign.geometry.brep import Brep, build_brep, explore
+from codesign.geometry.features import flats
 from codesign.geometry.shape import Shape, box
 from codesign.parts.component import Component
 from codesign.parts.part import Part
 from codesign.parts.step import Origin, write_step, write_step_assembly
+from codesign.parts.tolerances import bore_fit, general_flatness, general_length
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -46,12 +57,13 @@ class Hollow(Part):
 class StepFile:
     """A STEP file read back, with the names in it."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, tolerances: bool = False) -> None:
         self.document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
         XCAFApp_Application.GetApplication_s().InitDocument(self.document)
         reader = STEPCAFControl_Reader()
         Interface_Static.SetCVal_s("read.stepcaf.subshapes.name", "On")
         reader.SetNameMode(True)
+        reader.SetGDTMode(tolerances)
         reader.ReadFile(str(path))
         reader.Transfer(self.document)
         self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
@@ -197,3 +209,84 @@ def test_writing_is_silent_and_a_failure_leaves_nothing(tmp_path: Path, capfd: p
         write_step(BRACKET, tmp_path / "missing" / "part.step")
     assert capfd.readouterr() == ("", "")
     assert [file.name for file in tmp_path.iterdir()] == ["part.step"]
+
+
+def read_tolerances(path: Path) -> tuple[Counter[tuple[float, float, float]], Counter[float]]:
+    """(diameter, lower, upper) of the dimensions, values of the flatness tolerances.
+
+    OpenCASCADE turns the sign of lower deviations.
+    """
+    file = StepFile(path, tolerances=True)
+    tool = XCAFDoc_DocumentTool.DimTolTool_s(file.document.Main())
+    found = []
+    for get in (tool.GetDimensionLabels, tool.GetGeomToleranceLabels):
+        labels = Sequence_TDF_Label()
+        get(labels)
+        found.append([labels.Value(k + 1) for k in range(labels.Length())])
+    dimensions = [XCAFDoc_Dimension.Set_s(label).GetObject() for label in found[0]]
+    tolerances = [XCAFDoc_GeomTolerance.Set_s(label).GetObject() for label in found[1]]
+    kind = XCAFDimTolObjects_DimensionType.XCAFDimTolObjects_DimensionType_Size_Diameter
+    assert {item.GetType() for item in dimensions} <= {kind}
+    flatness = XCAFDimTolObjects_GeomToleranceType.XCAFDimTolObjects_GeomToleranceType_Flatness
+    assert {item.GetType() for item in tolerances} <= {flatness}
+    return (
+        Counter(
+            (round(d.GetValue(), 6), round(-d.GetLowerTolValue(), 6), round(d.GetUpperTolValue(), 6))
+            for d in dimensions
+        ),
+        Counter(round(t.GetValue(), 6) for t in tolerances),
+    )
+
+
+def test_tolerances_are_read_back(tmp_path: Path) -> None:
+    """Every bore has a diameter, the dowel's with its fit; the mount is datum A; mount and seat are flat."""
+    write_step(BRACKET, tmp_path / "bracket.step")
+    dimensions, flatness = read_tolerances(tmp_path / "bracket.step")
+    assert dimensions == {
+        (3.2, -0.1, 0.1): 6,
+        (6.0, -0.1, 0.1): 6,
+        (4.0, 0.0, 0.012): 1,  # H7
+        (8.4, -0.2, 0.2): 2,
+        (14.0, -0.2, 0.2): 2,
+        (46.0, -0.3, 0.3): 1,
+    }
+    brep = build_brep(BRACKET.shape())
+    named = [plane for plane in flats(brep) if any(face.IsSame(plane.face) for face, _ in brep.named_faces)]
+    assert flatness.total() == len(named) > 0
+    assert set(flatness) <= {0.1, 0.2}
+    text = (tmp_path / "bracket.step").read_text()
+    assert re.findall(r"= DATUM\('','',#\d+,\.F\.,'(\w+)'\)", text) == ["A"]  # OpenCASCADE reads none that is not used
+    assert len(re.findall(r"= ?PRODUCT\(", text)) == 1
+    assert "ISO 2768-mK" in text
+    assert "(-0.1," in text
+    assert "LIMITS_AND_FITS" not in text  # OpenCASCADE writes a wrong grade
+    write_step(BRACKET, tmp_path / "old.step", "AP214")
+    assert read_tolerances(tmp_path / "old.step") == (Counter(), Counter())
+
+
+def test_colors_tell_named_faces_apart(tmp_path: Path) -> None:
+    write_step(BRACKET, tmp_path / "bracket.step")
+    colors: dict[str, set[str | None]] = {}
+    for face in load_step(tmp_path / "bracket.step").faces:
+        colors.setdefault(face.name, set()).add(face.color)
+    assert all(len(found) == 1 for found in colors.values())
+    assert len({next(iter(found)) for found in colors.values()}) == len(colors) > 1
+
+
+@pytest.mark.parametrize(
+    ("diameter", "fit", "upper"),
+    [(3, "H7", 0.010), (4, "H7", 0.012), (10, "H8", 0.022), (18, "H6", 0.011), (120, "H9", 0.087)],
+)
+def test_basic_holes_of_iso_286(diameter: float, fit: str, upper: float) -> None:
+    assert bore_fit(diameter, fit) == (0.0, pytest.approx(upper))
+
+
+def test_fits_that_are_not_known() -> None:
+    for diameter, fit in ((10, "f7"), (10, "H5"), (200, "H7"), (10, "H")):
+        with pytest.raises(GeometryError, match=f"fit '{fit}' of a bore of {diameter} mm: only H6 to H9"):
+            bore_fit(diameter, fit)
+
+
+def test_general_tolerances() -> None:
+    assert [general_length(size) for size in (1, 5, 6.5, 30, 31, 400)] == [0.1, 0.1, 0.2, 0.2, 0.3, 0.5]
+    assert [general_flatness(size) for size in (10, 11, 100, 250)] == [0.05, 0.1, 0.2, 0.4]

@@ -93,6 +93,10 @@ class JetpackBracket(Part):
         """Six holes of the seat and two screws; the dowel hole is blind."""
         return 8
 
+    def fits(self) -> dict[float, str]:
+        """The dowel hole takes an m6 or h8 pin."""
+        return {4.0: "H7"}
+
     def shape(self) -> Shape:
         """The part as it is made."""
         return self._build()
