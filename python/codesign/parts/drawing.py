@@ -314,7 +314,7 @@ def _notes(sheet: Sheet, caption: Caption) -> None:
         *([f"Fits of bores (ISO 286): {fits}."] if fits else []),
         f"General tolerances {TOLERANCE}. Lengths in mm. Coordinates are those of the part's frame, as in the model.",
         f"What is not dimensioned is as in {caption.model or 'the model'}, revision {caption.revision or '-'}.",
-        "Not stated by the design: threads, fits, surface finish, edges, heat treatment, coating.",
+        "Not stated by the design: threads, other fits, surface finish, edges, heat treatment, coating.",
     )
     for number, line in enumerate(lines):
         sheet.write(line, LEFT + 4.0, BOTTOM + 4.0 + 4.2 * (len(lines) - 1 - number), SMALL)

@@ -124,26 +124,27 @@ def write_dxf(sheet: Sheet, path: str | os.PathLike[str]) -> None:
     Raises: LibraryError if ezdxf is not installed.
     """
     try:
-        import ezdxf
+        from ezdxf import filemanagement, units
         from ezdxf.enums import TextEntityAlignment
     except ImportError as error:
         raise LibraryError("DXF needs ezdxf, which is not installed: pip install 'codesign[drawing]'") from error
-    document = ezdxf.new("R2010", setup=True)
-    document.units = ezdxf.units.MM
+    document = filemanagement.new("R2010", setup=True)
+    document.units = units.MM
     document.header["$LTSCALE"] = 2.5
     space = document.modelspace()
     for name, pen in PENS.items():
         layer = document.layers.add(name.upper(), color=pen.color, linetype=pen.linetype)
         layer.dxf.lineweight = round(100 * pen.width)
     for line in sheet.lines:
-        layer = {"layer": line.pen.upper()}
+        on = {"layer": line.pen.upper()}
         if line.circle is not None:
             x, y, radius = line.circle
-            space.add_circle((x, y), radius, layer)
+            space.add_circle((x, y), radius, on)
         elif len(line.points) == 2:
-            space.add_line(*(tuple(point) for point in line.points.tolist()), dxfattribs=layer)
+            start, end = line.points.tolist()
+            space.add_line(start, end, on)
         else:
-            space.add_lwpolyline(line.points.tolist(), dxfattribs=layer)
+            space.add_lwpolyline(line.points.tolist(), dxfattribs=on)
     align = {
         "left": TextEntityAlignment.LEFT,
         "center": TextEntityAlignment.CENTER,
