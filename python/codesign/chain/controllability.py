@@ -59,8 +59,8 @@ def controllability(model: dyn.Model, settings: dyn.FlightSettings) -> Controlla
     com = dyn.center_of_mass(model, settings.base_pose, settings.initial_joints)
     weight = np.array([0.0, 0.0, model.total_mass * GRAVITY, 0.0, 0.0, 0.0])
     locked = dyn.locked_inertia(model, settings.base_pose, settings.initial_joints)
-    arm = float(np.sqrt(np.trace(locked[-3:, -3:]) / (2.0 * model.total_mass)))  # radius of gyration
-    units = weight[2] * np.array([1.0, 1.0, 1.0, arm, arm, arm])
+    gyration = float(np.sqrt(np.trace(locked[-3:, -3:]) / (2.0 * model.total_mass)))  # radius, m
+    units = weight[2] * np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
     thrust_map = np.column_stack([_wrench(axis, point - com, jet.reaction) for jet, axis, point in jets])
     least = np.array([jet.thrust_min for jet in settings.actuators])
     most = np.array([jet.thrust_max for jet in settings.actuators])
@@ -118,9 +118,9 @@ def _jets(model: dyn.Model, settings: dyn.FlightSettings) -> list[tuple[dyn.Actu
     return placed
 
 
-def _wrench(axis: Array, arm: Array, reaction: float) -> Array:
+def _wrench(axis: Array, lever: Array, reaction: float) -> Array:
     """(6,) force and moment about the center of mass per newton of thrust."""
-    return np.concatenate([axis, np.cross(arm, axis) + reaction * axis])
+    return np.concatenate([axis, np.cross(lever, axis) + reaction * axis])
 
 
 def _joint_map(

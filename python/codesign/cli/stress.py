@@ -26,7 +26,10 @@ LEFT_OUT_WARNED = 1.1  # times the peak: a stress left out that is a warning
 
 @dataclass(frozen=True)
 class Solved:
-    """A part that was meshed and solved. smoothing: how facets were curved back. seconds: wall clock."""
+    """A part that was meshed and solved. smoothing: how facets were curved back. seconds: wall clock.
+
+    ragged: why the borders of the places are no lines of the mesh; empty if they are.
+    """
 
     surface: fem.SurfaceMesh
     mesh: fem.TetMesh
@@ -35,6 +38,7 @@ class Solved:
     size: fem.SizeField
     smoothing: dict[str, Any] | None
     seconds: dict[str, float]
+    ragged: str
 
 
 def stress_document(
@@ -129,7 +133,7 @@ def _solve(
     except ModelError as error:
         raise StressInputError(str(error)) from None
     seconds = {"mesh": meshed - start, "solve": time.perf_counter() - meshed}
-    return Solved(surface, mesh, places, result, size, smoothing, seconds)
+    return Solved(surface, mesh, places, result, size, smoothing, seconds, named.ragged)
 
 
 def _write_files(path: Path, material: fem.Material, solved: Solved, vtu: Path | None, png: Path | None) -> None:
@@ -193,6 +197,10 @@ def _document(path: Path, material: fem.Material, solved: Solved, smooth: bool) 
 def _warnings(solved: Solved) -> list[str]:
     result = solved.result
     found = [warning for place in solved.places for warning in place.warnings()]
+    if solved.ragged:
+        found.append(
+            f"clamps and loads are made of whole sides of elements, as their borders gave no mesh: {solved.ragged}"
+        )
     if not result.peak_resolved:
         found.append(
             f"the peak stress is not resolved: its estimated error is {result.stress_error / result.peak_stress:.0%} "

@@ -117,8 +117,8 @@ def _mesh_either(
     """
     try:
         return mesher(labeled, last=False), named
-    except MeshError:
+    except MeshError as error:
         if mesher.is_spent:
             raise
         mesh = mesher(plain(), last=last)
-        return mesh, replace(named, selections=[place.on_mesh() for place in places])
+        return mesh, replace(named, selections=[place.on_mesh() for place in places], ragged=str(error))

@@ -130,12 +130,14 @@ Place = Near | Box | Facing | NamedFace | Holes
 class Labeled:
     """A surface with a named face for each place (and each overlap), and the places as selections of its mesh.
 
-    masks: (m,) of each place, which triangles of the surface belong to it.
+    masks: (m,) of each place, which triangles of the surface belong to it. ragged: why the borders of the places could
+    not be lines of the mesh, so that whole sides of elements are selected; empty if they are.
     """
 
     surface: fem.SurfaceMesh
     selections: list[fem.Selection]
     masks: list[Triangles]
+    ragged: str = ""
 
 
 def label_surface(surface: fem.SurfaceMesh, places: Sequence[Place]) -> Labeled:

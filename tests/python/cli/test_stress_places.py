@@ -7,8 +7,10 @@ import sys
 import pytest
 
 import fem_surfaces
+from codesign import fem
 from codesign.cli.stress import stress_document
 from codesign.cli.stress_options import StressInputError
+from codesign.errors import MeshError
 from codesign.parts.materials import named_material
 
 STEEL = named_material("steel_s235")
@@ -83,6 +85,21 @@ def test_a_patch_within_a_facet_is_cut_out(block, half):
     assert load["centroid"] == pytest.approx([20e-3, 10e-3, 10e-3])
     assert document["reaction_force"] == pytest.approx([0.0, 0.0, 100.0], abs=1e-5)
     assert document["max_displacement"] > 0.0
+
+
+def test_borders_that_give_no_mesh_are_told(block, monkeypatch):
+    """Sides of elements are taken instead of exact borders; the reason is no secret."""
+    mesh, tries = fem.tetrahedralize, iter((MeshError("edges meet at 0.1°"),))
+
+    def first_fails(*arguments, **options):
+        if (error := next(tries, None)) is not None:
+            raise error
+        return mesh(*arguments, **options)
+
+    monkeypatch.setattr(fem, "tetrahedralize", first_fails)
+    document = stress_document(block, 1e-3, STEEL, [END], ["normal:1,0,0: 100 0 0"], 5.0)
+    assert any("as their borders gave no mesh: edges meet at 0.1°" in warning for warning in document["warnings"])
+    assert document["places"][1]["area"] == pytest.approx(200e-6, rel=1e-6)
 
 
 def test_loads_that_cancel_are_refused(block):
