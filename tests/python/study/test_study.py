@@ -114,7 +114,7 @@ def test_wrong_studies_are_refused_with_file_key_and_reason(copy, old, new, mess
 
 
 def test_missing_study_names_the_shipped_ones():
-    with pytest.raises(StudyError, match="shipped studies: gimbal_quad, hexarotor, ironcub, ironcub_paper, ironcub_strength"):
+    with pytest.raises(StudyError, match="shipped studies: gimbal_quad, hexarotor, ironcub, ironcub_paper"):
         load_study("nowhere")
 
 
