@@ -16,6 +16,7 @@ from codesign.cli.export_formats import CAD, DEFAULT, LOG, ROBOT
 from codesign.cli.order import Order
 from codesign.cli.robot_files import write_robot_files, write_urdf
 from codesign.errors import DesignError
+from codesign.fem.gmsh import write_msh
 from codesign.fem.vtu import StressModel, write_vtu
 from codesign.files import write_text
 from codesign.interrupts import native_threads
@@ -78,6 +79,8 @@ def export_design(
                 name: _write_stress(order, name, parts[name], analysis, folder / "stress")
                 for name, analysis in analyses.items()
             }
+        if "msh" in formats:
+            _write_meshes(analyses, folder / "stress")
         write_text(folder / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1))
         write_text(folder / "bom.csv", order.bill_of_materials())
         write_text(folder / "README.md", order.page(evaluation, models))
@@ -89,10 +92,10 @@ def export_design(
 def _computed(
     study: Study, design: Design, formats: Sequence[str]
 ) -> tuple[Evaluation, dict[str, _core.PartAnalysis], FlightLog | None]:
-    """What the files are made of. Stress fields are computed for `vtu` only: numbers of a known design are cached."""
+    """What the files are made of. Fields are computed for `vtu` and `msh` only: known numbers come from the cache."""
     grid = study.space.indices(design)
     with open_cache(default_cache_path(study.name), study.identity.program) as cache:
-        known = None if "vtu" in formats else known_evaluation(study, grid, cache)
+        known = None if {"vtu", "msh"} & set(formats) else known_evaluation(study, grid, cache)
         if known is not None:
             wanted = any(kind in formats for kind in (*ROBOT, *LOG))
             return known, {}, fly_design(study, design) if wanted else None
@@ -186,6 +189,13 @@ def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnaly
             model = model.with_mirror_image(point, normal)
         write_vtu(model, folder / f"{stem}_whole.vtu", notes | {"model": f"{words}, and its mirror image"})
     return words
+
+
+def _write_meshes(analyses: Mapping[str, _core.PartAnalysis], folder: Path) -> None:
+    """The analyzed mesh of each part for Gmsh."""
+    folder.mkdir(exist_ok=True)
+    for name, analysis in analyses.items():
+        write_msh(analysis.mesh, folder / f"{name}.msh", name)
 
 
 def _symmetry_planes(mesh: fem.TetMesh, supports: list[_core.fem.Support]) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -11,7 +11,7 @@ from codesign.names import nearest
 CAD = ("stl", "step", "3mf", "glb", "pdf", "dxf")
 ROBOT = ("urdf", "mjcf", "sdf")
 LOG = ("csv", "parquet", "mcap")
-FORMATS = (*CAD, *ROBOT, *LOG, "vtu")
+FORMATS = (*CAD, *ROBOT, *LOG, "vtu", "msh")
 DEFAULT = ("stl", "step", "3mf", "glb", "pdf", "urdf", "vtu")
 SHORT = {"log": ("csv", "parquet"), "all": FORMATS}
 LIBRARIES = {
@@ -29,6 +29,7 @@ UNITS = {
     "robot/*": ("m, kg, rad; meshes mm, scaled where they are named", ROBOT),
     "robot/flight.*": ("SI; the unit of each column in its name", LOG),
     "stress/*.vtu": ("m, Pa", ("vtu",)),
+    "stress/*.msh": ("m", ("msh",)),
     "evaluation.json": ("SI; design values as in the study", FORMATS),
     "bom.csv": ("kg, kg/m3", FORMATS),
 }
