@@ -124,6 +124,28 @@ def decided(part: Mapping[str, Any]) -> str:
     return text + (f"; by its fatigue it stands {min(flights):.1g} such flights" if flights else "")
 
 
+def as_made(run: ReportData) -> str:
+    """How the recommended design scatters within the tolerances, if it was sampled."""
+    if run.recommended is None or run.tolerances is None:
+        return ""
+    found = run.tolerances.of(run.entries[run.recommended].evaluation.design)
+    if found is None:
+        return ""
+    told = [
+        f"safety factor of the {words(name.split('.')[1]).lower()} {spread.low:.1f} to {spread.high:.1f}"
+        for name, spread in found.numbers.items()
+        if name.endswith(".safety_factor")
+    ]
+    labels = {objective.key: objective.label.lower() for objective in run.objectives}
+    told += [
+        f"{labels[name]} {percent(spread.low / spread.median - 1.0)} to {percent(spread.high / spread.median - 1.0)}"
+        for name, spread in found.numbers.items()
+        if name in labels and spread.median
+    ]
+    feasible = f"{found.feasible} are feasible; nine of ten have {listed(told)}"
+    return f"Made {found.samples} times within its tolerances, {feasible}."
+
+
 def reservations(run: ReportData) -> list[str]:
     """What must be settled before the recommended design is built."""
     if run.recommended is None:

@@ -92,6 +92,7 @@ def _build(run: ReportData) -> str:
         recommendation.why(run),
         f"{recommendation.price(run)} {recommendation.second_opinion(run)}",
         recommendation.strength(run),
+        recommendation.as_made(run),
         recommendation.unchecked(run),
     ]
     paragraphs = "".join(f"<p>{escape(text.strip())}</p>" for text in said if text.strip())
