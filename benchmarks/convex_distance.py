@@ -37,7 +37,7 @@ def asked_pairs() -> list[Pair]:
         return hull_distances(hulls, first, second, poses)
 
     clearance.hull_distances = record
-    codesign.load_study("ironcub").evaluate(DESIGN)
+    codesign.load_study("ironcub_paper").evaluate(DESIGN)
     clearance.hull_distances = hull_distances
     return pairs
 

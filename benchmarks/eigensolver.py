@@ -30,7 +30,7 @@ def main() -> None:
     parser.add_argument("--program", type=Path, default=BUILT.with_name("benchmark_eigensolver"))
     parser.add_argument("--repeats", type=int, default=5)
     given = parser.parse_args()
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     print("| part | equations | modes | ours, s | Spectra, s | difference of frequency | residuals |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for name, part in study.build_parts(DESIGNS[0]).items():

@@ -59,7 +59,7 @@ def main() -> None:
     parser.add_argument("--program", type=Path, default=BUILT)
     parser.add_argument("--repeats", type=int, default=7)
     given = parser.parse_args()
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     print("| part | equations | part, s | analysis, s | factor, s | solve, s | entries | saved | difference |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for design in DESIGNS:

@@ -46,7 +46,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--designs", type=int, default=8)
     arguments = parser.parse_args()
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     print("| part | lowest triangle, mm | edges collapsed by the mesher | elements | safety factor | CPU, s |")
     print("| --- | --- | --- | --- | --- | --- |")
     for grid in start_points(study.space, arguments.designs, "sobol", 1):

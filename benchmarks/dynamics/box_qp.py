@@ -105,7 +105,7 @@ def proxqp_of(n: int, first: Problem) -> proxsuite.proxqp.dense.QP:
 
 
 def time_in_flight(repeats: int) -> None:
-    model = dyn.load_urdf(load_study().build_robot(DESIGN), joints=ironcub_flight.JOINTS)
+    model = dyn.load_urdf(load_study("ironcub_paper").build_robot(DESIGN), joints=ironcub_flight.JOINTS)
     settings = ironcub_flight.settings(1)
     logs = [dyn.simulate_flight(model, settings) for _ in range(repeats)]
     native = min(log.profile.momentum_qp for log in logs) / logs[0].samples * 1e6

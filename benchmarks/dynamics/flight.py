@@ -27,7 +27,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--repeats", type=int, default=15)
     repeats = parser.parse_args().repeats
-    model = dyn.load_urdf(load_study().build_robot(DESIGN), joints=ironcub_flight.JOINTS)
+    model = dyn.load_urdf(load_study("ironcub_paper").build_robot(DESIGN), joints=ironcub_flight.JOINTS)
     settings = ironcub_flight.settings(1)
     best = float("inf")
     phases = dict.fromkeys(PHASES, float("inf"))

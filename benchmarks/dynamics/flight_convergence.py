@@ -53,7 +53,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--control-step", type=float, default=0.004, help="of the plant's refinement [s]")
     control = parser.parse_args().control_step
-    model = dyn.load_urdf(load_study().build_robot(DESIGN), joints=ironcub_flight.JOINTS)
+    model = dyn.load_urdf(load_study("ironcub_paper").build_robot(DESIGN), joints=ironcub_flight.JOINTS)
     loop_steps = [0.008, 0.004, 0.002, 0.001]
     for free_fall in (False, True):
         for integrator in (dyn.Integrator.euler, dyn.Integrator.semi_implicit_euler):

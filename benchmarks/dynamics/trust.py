@@ -1,4 +1,4 @@
-"""What the default study's flights depend on: steps of the loops, start, draws of the unknown, time.
+"""What a study's flights depend on: steps of the loops, start, draws of the unknown, time.
 
   python benchmarks/dynamics/trust.py steps --designs 28     # ranks of designs, and their front, at half of all steps
   python benchmarks/dynamics/trust.py seeds --seeds 20 --design 15 42 80 108 --design 4 40 98 118
@@ -45,16 +45,22 @@ def pool(count: int) -> list[tuple[int, ...]]:
     return (PUBLISHED + drawn)[:count]
 
 
-def fly(
-    study: codesign.Study, theta: Sequence[int], seeds: Sequence[int], change: Change | None = None
-) -> list[dyn.FlightLog]:
-    """The study's flight of a design under each seed."""
+def prepared(
+    study: codesign.Study, theta: Sequence[int], change: Change | None = None
+) -> tuple[dyn.Model, dyn.FlightSettings]:
+    """Robot and settings of the study's flight of a design."""
     config = study.configured(study.space.design(list(theta)))
     settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
     if change is not None:
         change(settings)
-    model = dyn.load_urdf(study.build_robot(list(theta)), joints=joint_names(config.flown))
-    return list(dyn.simulate_flights(model, settings, seeds))
+    return dyn.load_urdf(study.build_robot(list(theta)), joints=joint_names(config.flown)), settings
+
+
+def fly(
+    study: codesign.Study, theta: Sequence[int], seeds: Sequence[int], change: Change | None = None
+) -> list[dyn.FlightLog]:
+    """The study's flight of a design under each seed."""
+    return list(dyn.simulate_flights(*prepared(study, theta, change), list(seeds)))
 
 
 def objectives(logs: Sequence[dyn.FlightLog]) -> list[float]:
@@ -83,9 +89,9 @@ def calm_and_halved(settings: dyn.FlightSettings) -> None:
     halve(settings)
 
 
-def steps(study: codesign.Study, count: int) -> None:
+def steps(study: codesign.Study, count: int, draws: int) -> None:
     """Objectives at the study's steps against half of them, calm and disturbed."""
-    seeds = study.config.flown.seeds or [0]
+    seeds = (study.config.flown.seeds or [0])[:draws]
     whole: dict[str, list[list[float]]] = {"calm": [], "disturbed": []}
     halved: dict[str, list[list[float]]] = {"calm": [], "disturbed": []}
     shares = []
@@ -142,14 +148,15 @@ def seeds(study: codesign.Study, designs: Sequence[Sequence[int]], count: int) -
 
 def times(study: codesign.Study, repeats: int) -> None:
     """CPU time of one flight over that of the study as published, alternating in one process; median of the ratios."""
-    published, theta = codesign.load_study("ironcub_paper"), PUBLISHED[0]
-    count = len(study.config.flown.seeds) or 1
-    ratios: dict[str, list[float]] = {"one flight": [], f"a flight of a batch of {count}": []}
+    published = prepared(codesign.load_study("ironcub_paper"), PUBLISHED[0])
+    own = prepared(study, PUBLISHED[0])
+    batch = list(study.config.flown.seeds) or [0]
+    ratios: dict[str, list[float]] = {"one flight": [], f"a flight of a batch of {len(batch)}": []}
     for _ in range(repeats):
-        base = cpu(lambda: fly(published, theta, [0]))
-        ratios["one flight"].append(cpu(lambda: fly(study, theta, [1])) / base)
-        batch = cpu(lambda: fly(study, theta, range(1, count + 1)))
-        ratios[f"a flight of a batch of {count}"].append(batch / count / base)
+        base = cpu(lambda: dyn.simulate_flights(*published, [0]))
+        ratios["one flight"].append(cpu(lambda: dyn.simulate_flights(*own, batch[:1])) / base)
+        together = cpu(lambda: dyn.simulate_flights(*own, batch))
+        ratios[f"a flight of a batch of {len(batch)}"].append(together / len(batch) / base)
     for name, values in ratios.items():
         print(f"{name}: {statistics.median(values):.2f} times as published ({min(values):.2f} to {max(values):.2f})")
 
@@ -163,15 +170,16 @@ def cpu(work: Callable[[], object]) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=["steps", "seeds", "time"])
-    parser.add_argument("--study", default="ironcub")
+    parser.add_argument("--study", default="ironcub_robust")
     parser.add_argument("--designs", type=int, default=28)
+    parser.add_argument("--draws", type=int, default=3, help="of the study's seeds, in `steps`")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--design", type=int, nargs="+", action="append", default=[])
     asked = parser.parse_args()
     study = codesign.load_study(asked.study)
     if asked.what == "steps":
-        steps(study, asked.designs)
+        steps(study, asked.designs, asked.draws)
     elif asked.what == "seeds":
         seeds(study, asked.design or PUBLISHED[:1], asked.seeds)
     else:

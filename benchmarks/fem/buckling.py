@@ -54,7 +54,7 @@ def calculix_factors(mesh: fem.TetMesh, case: _core.PartCase, count: int) -> lis
 
 def own_factors() -> None:
     """The first table."""
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     print("| part | mesh | tetrahedra | first two factors | CPU s without | with one |")
     print("| --- | --- | --- | --- | --- | --- |")
     for design in DESIGNS:
@@ -72,7 +72,7 @@ def own_factors() -> None:
 
 def against_calculix() -> None:
     """The second table: meshes with straight and curved elements, which CalculiX integrates with four points."""
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     print("| part | elements | codesign | CalculiX |\n| --- | --- | --- | --- |")
     for design in DESIGNS:
         part = study.build_parts(design)["forearm_support"]

@@ -105,7 +105,7 @@ def mesh_sizes(part: Part, settings: StressSettings) -> None:
 
 
 def main() -> None:
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     parts = [
         (part, stress_settings(study.config, name)) for d in DESIGNS for name, part in study.build_parts(d).items()
     ]

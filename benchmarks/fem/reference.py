@@ -32,7 +32,7 @@ TOLERANCE = {"peak": 5.0, "stress_50": 3.0, "u": 2.0, "work": 2.0}  # %
 
 def analyze(part: str, design: dict[str, float], accuracy: str, geometry: str) -> tuple[_core.PartAnalysis, float]:
     """The analysis of one part of the shipped study and its CPU time [s]."""
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     theta = {"angle": 15.0, "distance": 42.0, "offset": 80.0, "length": 108.0} | design
     shape = build_parts(study, theta)[part]
     settings = replace(stress_settings(study.config, part), accuracy=accuracy, geometry=geometry)

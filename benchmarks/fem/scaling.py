@@ -41,7 +41,7 @@ def solve(case: _core.PartCase, mesh: fem.TetMesh, solver: str) -> tuple[float, 
 def main() -> None:
     largest = int(sys.argv[1]) if len(sys.argv) > 1 else 300_000
     part = ForearmJetSupport(88, 50)
-    case = part.stress_case(stress_settings(codesign.load_study("ironcub").config, part.name))
+    case = part.stress_case(stress_settings(codesign.load_study("ironcub_paper").config, part.name))
     print("| unknowns | tetrahedra | mesh CPU s | direct, CPU s | iterative | iterations | difference | automatic |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     unknowns: list[int] = []

@@ -74,7 +74,7 @@ def row(part: Part, settings: StressSettings, factor: float) -> bool:
 def main() -> None:
     step = int(sys.argv[1]) if len(sys.argv) > 1 else 1
     factor = float(sys.argv[2]) if len(sys.argv) > 2 else 1.0
-    config = codesign.load_study("ironcub").config
+    config = codesign.load_study("ironcub_paper").config
     print("| part | peak, MPa | reference | true error | estimate | inside | estimate of the reference | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     inside = []

@@ -210,7 +210,7 @@ def threshold(source: fem.SizeSource, base: float) -> int:
 
 def compare(part: Any, shape: Shape, facet_angle: float) -> None:
     """Prints the rows of one part."""
-    config = codesign.load_study("ironcub").config
+    config = codesign.load_study("ironcub_paper").config
     case = part.stress_case(stress_settings(config, part.name))
     start = time.process_time()
     mesh = fem.tetrahedralize(case.surface, case.size, facet_angle_deg=facet_angle)

@@ -1,6 +1,6 @@
 """How much of the true front NSGA-II finds: a sub-grid is swept whole, then searched with a small budget.
 
-  python benchmarks/optimizer/ground_truth.py --study ironcub --counts 14 7 5 6 --evaluations 400 --seeds 5 --workers 2
+  python benchmarks/optimizer/ground_truth.py --study ironcub_paper --counts 14 7 5 6 --evaluations 400 --seeds 5
   python benchmarks/optimizer/ground_truth.py --study smooth --counts 14 7 5 6            (analytic, a minute)
 
 Prints a line a seed: hypervolume of the front found over that of the true front, and how many of its designs were

@@ -1,6 +1,6 @@
 """NSGA-II (or another algorithm) against random search with the same number of evaluations, several seeds.
 
-  python benchmarks/optimizer/hypervolume.py --study ironcub --population 25 --generations 40 --seeds 5 --workers 2
+  python benchmarks/optimizer/hypervolume.py --study ironcub_paper --population 25 --generations 40 --seeds 5
   python benchmarks/optimizer/hypervolume.py --study smooth            (or rugged, broken: analytic, seconds)
 
 Prints a line a seed: hypervolume of both fronts in one box (front.Hypervolume over all designs of all runs). Runs are

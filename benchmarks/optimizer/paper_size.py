@@ -22,7 +22,7 @@ PAPER_SECONDS = 216.0  # a design, "From CAD to URDF: Co-Design of a Jet-Powered
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--study", default="ironcub")
+    parser.add_argument("--study", default="ironcub_paper")
     parser.add_argument("--population", type=int, default=25)
     parser.add_argument("--generations", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)

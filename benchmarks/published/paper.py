@@ -348,7 +348,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--page", type=Path, default=ROOT / "docs" / "paper.md")
     given = parser.parse_args()
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     run = the_run(given.run, study, given.workers)
     if load_validation(given.run) is None:
         validate(given.run, workers=given.workers)

@@ -20,7 +20,7 @@ def cache():
 
 @pytest.fixture(scope="module")
 def original(cache):
-    return load_study("ironcub").evaluate(ORIGINAL, cache=cache)
+    return load_study("ironcub_paper").evaluate(ORIGINAL, cache=cache)
 
 
 def test_original_design_is_feasible(original):
@@ -65,7 +65,7 @@ def test_document_has_every_promised_key(original):
 
 
 def test_result_does_not_depend_on_what_the_process_did_before(original):
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     study.evaluate({"angle": 10, "distance": 78, "offset": 88, "length": 148})  # once ended the process in CGAL
     again = study.evaluate(ORIGINAL)
     for name, part in original.parts.items():
@@ -76,13 +76,13 @@ def test_result_does_not_depend_on_what_the_process_did_before(original):
 
 
 def test_cached_parts_give_the_same_evaluation(original, cache):
-    again = load_study("ironcub").evaluate(ORIGINAL, cache=cache)
+    again = load_study("ironcub_paper").evaluate(ORIGINAL, cache=cache)
     assert again.objectives == original.objectives
     assert again.parts == original.parts
 
 
 def test_steep_bracket_loses_the_flight_and_stays_without_objectives(cache):
-    lost = load_study("ironcub").evaluate([60, 54, 90, 74], cache=cache)
+    lost = load_study("ironcub_paper").evaluate([60, 54, 90, 74], cache=cache)
     assert lost.status == "infeasible"
     assert re.match(r"flight lost at [1-9]\.", lost.reason or "")
     assert lost.objectives == {}

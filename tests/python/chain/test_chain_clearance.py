@@ -14,7 +14,7 @@ from codesign.chain.judge import judge
 @pytest.fixture(scope="module")
 def flown():
     """Short rod and nearly flat bracket: turbines near the upper arms, chest plumes near the feet."""
-    study = codesign.load_study("ironcub")
+    study = codesign.load_study("ironcub_paper")
     design = study.space.design((1, 48, 88, 50))
     config = study.configured(design)
     robot = pipeline.build_robot(study, design)

@@ -87,7 +87,7 @@ def test_what_is_too_heavy_or_out_of_balance_cannot_hover():
 
 
 def test_joints_turn_and_shift_the_jets_as_finite_differences_say():
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     config = study.config
     settings = flight_settings(config.flight, find_trajectory(config, config.flight.trajectory))
     model = dyn.load_urdf(study.build_robot(study.baseline), joints=joint_names(config.flight))

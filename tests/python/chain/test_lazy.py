@@ -9,7 +9,7 @@ from codesign.chain.lazy import NOT_COMPUTED, can_wait
 from codesign.chain.study import load_study
 from codesign.study.config import LimitConfig, ObjectivesConfig
 
-STUDY = load_study("ironcub")
+STUDY = load_study("ironcub_paper")
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
 
 

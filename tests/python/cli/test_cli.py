@@ -11,6 +11,7 @@ COMMANDS = (
     "check", "doctor", "materials", "schema",
 )  # fmt: skip
 ORIGINAL = ("--set", "angle=15", "--set", "distance=42", "--set", "offset=80", "--set", "length=108")
+PUBLISHED = ("--study", "ironcub_paper")
 
 
 def codesign(*arguments: str, cwd=None) -> subprocess.CompletedProcess[str]:
@@ -74,27 +75,29 @@ def test_bad_input_with_json_is_one_document():
 
 
 def test_evaluate_prints_the_document():
-    result = codesign("evaluate", *ORIGINAL, "--json")
+    result = codesign("evaluate", *PUBLISHED, *ORIGINAL, "--json")
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
     assert document["status"] == "feasible"
     assert document["design"] == {"angle": 15, "distance": 42, "offset": 80, "length": 108}
-    assert json.loads(codesign("evaluate", *ORIGINAL, "--json", "--no-cache").stdout)["flight"] != {}
-    again = codesign("evaluate", *ORIGINAL, "--json")
+    assert json.loads(codesign("evaluate", *PUBLISHED, *ORIGINAL, "--json", "--no-cache").stdout)["flight"] != {}
+    again = codesign("evaluate", *PUBLISHED, *ORIGINAL, "--json")
     assert "known from the cache" in again.stderr
     assert json.loads(again.stdout) == document
 
 
 def test_a_lost_flight_is_exit_code_1():
     result = codesign(
-        "evaluate", *("--set", "angle=60", "--set", "distance=54", "--set", "offset=90", "--set", "length=74")
+        "evaluate",
+        *PUBLISHED,
+        *("--set", "angle=60", "--set", "distance=54", "--set", "offset=90", "--set", "length=74"),
     )
     assert result.returncode == 1
     assert "infeasible" in result.stdout
 
 
 def test_fly_published_robot_gives_the_published_objectives(shared_data):
-    result = codesign("fly", str(shared_data / "published" / "optim1.urdf"), "--as-published", "--json")
+    result = codesign("fly", str(shared_data / "published" / "optim1.urdf"), *PUBLISHED, "--as-published", "--json")
     assert result.returncode == 0, result.stderr
     document = json.loads(result.stdout)
     parts = document["objective_parts"]["script"]  # shared/data/published/README.md

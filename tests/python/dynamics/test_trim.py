@@ -13,7 +13,7 @@ ARMS = ironcub_flight.LEFT_ARM + ironcub_flight.RIGHT_ARM
 
 @pytest.fixture(scope="module")
 def robot() -> dyn.Model:
-    urdf = codesign.load_study().build_robot({"angle": 15, "distance": 42, "offset": 80, "length": 108})
+    urdf = codesign.load_study("ironcub_paper").build_robot({"angle": 15, "distance": 42, "offset": 80, "length": 108})
     return dyn.load_urdf(urdf, joints=ironcub_flight.JOINTS)
 
 

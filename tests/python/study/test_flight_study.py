@@ -22,7 +22,7 @@ REFERENCE = {
 @cache
 def robot(design: tuple[int, ...]) -> dyn.Model:
     named = dict(zip(("angle", "distance", "offset", "length"), design, strict=True))
-    return dyn.load_urdf(load_study().build_robot(named), joints=ironcub_flight.JOINTS)
+    return dyn.load_urdf(load_study("ironcub_paper").build_robot(named), joints=ironcub_flight.JOINTS)
 
 
 def rms(log: dyn.FlightLog) -> np.ndarray:

@@ -41,13 +41,15 @@ def copy(tmp_path):
 
 
 def test_shipped_studies_load():
-    assert shipped_studies() == ["gimbal_quad", "hexarotor", "ironcub", "ironcub_paper", "ironcub_strength"]
+    assert shipped_studies() == [
+        "gimbal_quad", "hexarotor", "ironcub", "ironcub_paper", "ironcub_robust", "ironcub_strength",
+    ]  # fmt: skip
     for name in shipped_studies():
         assert load_study(name).baseline is not None
 
 
 def test_paper_grid():
-    assert load_study("ironcub").space.levels == (79, 31, 21, 51)
+    assert load_study("ironcub_paper").space.levels == (79, 31, 21, 51)
 
 
 @pytest.mark.parametrize(

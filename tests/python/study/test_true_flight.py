@@ -17,7 +17,7 @@ ROTORS = np.array([0.137, 0.137, 0.0795] + 8 * [0.0795] + 12 * [0.137])  # kg mÂ
 @cache
 def robot(design: tuple[int, ...]) -> dyn.Model:
     named = dict(zip(("angle", "distance", "offset", "length"), design, strict=True))
-    return dyn.load_urdf(load_study().build_robot(named), joints=ironcub_flight.JOINTS)
+    return dyn.load_urdf(load_study("ironcub_paper").build_robot(named), joints=ironcub_flight.JOINTS)
 
 
 def exact(torque_updates: int = 1, substeps: int = 4) -> dyn.FlightSettings:
