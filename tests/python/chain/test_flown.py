@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from codesign.chain import chain, flown
 from codesign.chain.flight import find_trajectory, flight_settings
 from codesign.chain.study import Study
 from codesign.errors import StudyError
-from codesign.parts.load_case import part_case, placed
+from codesign.parts.load_case import CaseSettings, PushedFace, part_case, placed
 from codesign.robot.description import RobotDescription
 from codesign.robot.motion import MotionHistory, Thrust, descendants
 from codesign.study.loading import STUDIES
@@ -149,6 +150,19 @@ def test_the_flown_case_is_in_the_document_and_governs(study: Study) -> None:
         assert part["load_case"] == min(reserve, key=reserve.__getitem__)
         assert part["safety_factor"] == part["cases"][part["load_case"]]["safety_factor"]
         assert f"parts.{name}.cases.flown.safety_factor" in evaluation.constraints
+
+
+def test_the_whole_bracket_is_twice_its_half(study: Study) -> None:
+    """Under the published load: peak within 2 %, work within 1 %; a load across is taken by the whole part alone."""
+    part = study.build_parts(DESIGN)["jetpack_bracket"]
+    settings = replace(chain.stress_settings(study.config, "jetpack_bracket"), flown=())
+    across = CaseSettings("across", (PushedFace("seat", (0.0, 100.0, 0.0)),))
+    half = _core.analyze_part(part_case(part, settings))
+    whole = _core.analyze_part(part_case(part, replace(settings, cases=(*settings.cases, across))))
+    assert whole.mesh.nodes[:, 1].min() == pytest.approx(-half.mesh.nodes[:, 1].max())
+    assert whole.results[0].peak_stress == pytest.approx(half.results[0].peak_stress, rel=0.02)
+    assert whole.results[0].work == pytest.approx(half.results[0].work, rel=0.01)
+    assert whole.results[1].peak_stress > 0.0
 
 
 def test_the_answers_of_a_part_are_kept(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
