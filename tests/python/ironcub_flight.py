@@ -84,6 +84,34 @@ def windows(trajectory: int) -> list[dyn.CommandWindow]:
     return [dyn.CommandWindow(start=a, end=b, **signs) for a, b, signs in TRAJECTORIES[trajectory]]
 
 
+def gains() -> dyn.Gains:
+    """As published."""
+    return dyn.Gains(
+        momentum_proportional=1.5,
+        momentum_derivative=2.5 * 1.5**0.5,
+        momentum_integral=10.0,
+        attitude_proportional=50.0,
+        attitude_derivative=2.0 * 50.0**0.5,
+        posture=np.array([30.0] * 3 + [20.0] * 8 + [30.0] * 12),
+        torque_proportional=2.0 * 50.0**0.5,
+        torque_integral=50.0,
+    )
+
+
+def weights() -> dyn.Weights:
+    """As published."""
+    return dyn.Weights(
+        momentum=10.0,
+        constant_inertia=150.0,
+        posture=2.5,
+        joint_velocity=10.0,
+        thrust_rate=0.01,
+        thrust_symmetry=0.1,
+        regularization=1e-4,
+        torque=1.1e-3,
+    )
+
+
 def settings(trajectory: int = 1) -> dyn.FlightSettings:
     """Settings of the published study on one trajectory, integrator jets, 8 ms explicit Euler."""
     base_pose = np.diag([-1.0, -1.0, 1.0, 1.0])
@@ -119,26 +147,8 @@ def settings(trajectory: int = 1) -> dyn.FlightSettings:
         initial_thrusts=np.full(4, 175.0),
         trajectory=windows(trajectory),
         symmetry_pairs=[(0, 1), (2, 3)],
-        gains=dyn.Gains(
-            momentum_proportional=1.5,
-            momentum_derivative=2.5 * 1.5**0.5,
-            momentum_integral=10.0,
-            attitude_proportional=50.0,
-            attitude_derivative=2.0 * 50.0**0.5,
-            posture=np.array([30.0] * 3 + [20.0] * 8 + [30.0] * 12),
-            torque_proportional=2.0 * 50.0**0.5,
-            torque_integral=50.0,
-        ),
-        weights=dyn.Weights(
-            momentum=10.0,
-            constant_inertia=150.0,
-            posture=2.5,
-            joint_velocity=10.0,
-            thrust_rate=0.01,
-            thrust_symmetry=0.1,
-            regularization=1e-4,
-            torque=1.1e-3,
-        ),
+        gains=gains(),
+        weights=weights(),
         limits=dyn.Limits(
             joint_lower=ranges[:, 0],
             joint_upper=ranges[:, 1],

@@ -131,6 +131,26 @@ class Rod(Part):
 """
 
 
+def complete_flight(raw: dict[str, Any]) -> None:
+    """Fills in start, rates, drives, air and fuel of the flight."""
+    raw |= {"extends": "", "without": []}
+    raw["flight"] |= {
+        "jet_model": "turbine", "duration_s": 0.08, "torque_step_s": 0.004, "plant_step_s": 0.002,
+        "integrator": "runge_kutta_4", "seeds": [1, 2],
+        "drives": {"momentum_delay_s": 0.008, "torque_delay_s": 0.004, "torque_lag_s": 0.005, "slip_speed_rad_s": 0.02},
+        "drag": {"frames": ["front_jet"], "areas_m2": [0.2], "positions_m": [[0.0, 0.0, 0.1]],
+                 "air_density_kg_m3": 1.2},
+        "tank": {"frame": "front_jet", "position_m": [0.0, 0.0, 0.0], "fuel_kg": 0.01, "consumption_kg_per_n_s": 1e-5},
+    }  # fmt: skip
+    raw["flight"]["initial_state"] |= {"base_rpy_deg": [0.0, 0.0, 0.0], "free_fall_first_step": False}
+    group = raw["flight"]["joint_groups"][0]
+    raw["flight"]["initial_state"]["trim"] = {"joints": group["joints"], "tilt_weight": 3.0, "thrust_weight": 0.003}
+    group |= {"range_scale": 1.0, "reference_rad": list(group["initial_rad"]), "rotor_inertia_kg_m2": 0.01}
+    group |= {"viscous_friction_n_m_per_rad_s": 0.1, "coulomb_friction_n_m": [0.1] * len(group["joints"])}
+    raw["flight"]["gains"]["observer_hz"], wind = 5.0, {"wind_m_s": [2.0, 0.0, 0.0]}
+    raw["trajectories"]["gusty"]["disturbances"] |= wind
+
+
 def complete(raw: dict[str, Any]) -> None:
     """Fills in what has a default, so that every key of the configuration has a value."""
     raw["robot"]["visuals"] = "package://absent/robot.urdf"
@@ -161,29 +181,12 @@ def complete(raw: dict[str, Any]) -> None:
         {
             "face": "seat",
             "interface": interface,
-            "mass_kg": 0.1,
-            "point_mm": [0.0, 0.0, 9.0],
-            "inertia_kg_m2": [0, 0, 0],
+            **{"mass_kg": 0.1, "point_mm": [0.0, 0.0, 9.0], "inertia_kg_m2": [0, 0, 0]},
         }
     ]
     raw["fem"] |= {"load": "uniform", "support": "published", "exclusion_distance_mm": 3.0, "memory_limit_mib": 1400}
     raw["fem"]["edge_length_mm"] = 2.0
-    raw |= {"extends": "", "without": []}
-    raw["flight"] |= {
-        "jet_model": "turbine", "duration_s": 0.08, "torque_step_s": 0.004, "plant_step_s": 0.002,
-        "integrator": "runge_kutta_4", "seeds": [1, 2],
-        "drives": {"momentum_delay_s": 0.008, "torque_delay_s": 0.004, "torque_lag_s": 0.005, "slip_speed_rad_s": 0.02},
-        "drag": {"frames": ["front_jet"], "areas_m2": [0.2], "positions_m": [[0.0, 0.0, 0.1]],
-                 "air_density_kg_m3": 1.2},
-        "tank": {"frame": "front_jet", "position_m": [0.0, 0.0, 0.0], "fuel_kg": 0.01, "consumption_kg_per_n_s": 1e-5},
-    }  # fmt: skip
-    raw["flight"]["initial_state"] |= {"base_rpy_deg": [0.0, 0.0, 0.0], "free_fall_first_step": False}
-    group = raw["flight"]["joint_groups"][0]
-    raw["flight"]["initial_state"]["trim"] = {"joints": group["joints"], "tilt_weight": 3.0, "thrust_weight": 0.003}
-    group |= {"range_scale": 1.0, "reference_rad": list(group["initial_rad"]), "rotor_inertia_kg_m2": 0.01}
-    group |= {"viscous_friction_n_m_per_rad_s": 0.1, "coulomb_friction_n_m": [0.1] * len(group["joints"])}
-    raw["flight"]["gains"]["observer_hz"] = 5.0
-    raw["trajectories"]["gusty"]["disturbances"]["wind_m_s"] = [2.0, 0.0, 0.0]
+    complete_flight(raw)
     raw["flight"]["jets"] |= {
         "symmetric_pairs": [["front_jet", "rear_jet"]], "min_thrust_n": 5.0, "axes": 4 * [[0.0, 0.0, -1.0]],
         "reaction_n_m_per_n": 0.01, "lag_s": [0.05, 0.05, 0.06, 0.06],
