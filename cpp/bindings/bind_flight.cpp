@@ -170,6 +170,30 @@ std::optional<std::string> reason_text(const FlightLog& log) {
   return std::nullopt;
 }
 
+void bind_measures(py::module_& m) {
+  using M = FlightMeasures;
+  py::class_<M>(m, "FlightMeasures", "Tracking, energy and fuel of a flight.")
+      .def_readonly("com_error_rms", &M::com_error_rms, "[m]")
+      .def_readonly("attitude_error_rms", &M::attitude_error_rms,
+                    "of the norm of the roll, pitch and yaw errors [rad]")
+      .def_readonly("pose_error_rms", &M::pose_error_rms,
+                    "of sqrt(|center of mass error|^2 + (1 m angle)^2) [m]")
+      .def_readonly("max_com_error", &M::max_com_error, "[m]")
+      .def_readonly("max_attitude_error", &M::max_attitude_error,
+                    "norm of the roll, pitch and yaw errors [rad]")
+      .def_readonly("final_com_error", &M::final_com_error, "[m]")
+      .def_readonly("mechanical_energy", &M::mechanical_energy,
+                    "sum over the joints of the integral of |torque velocity| [J]")
+      .def_readonly("positive_energy", &M::positive_energy, "of its positive part [J]")
+      .def_readonly("fuel", &M::fuel, "[kg]")
+      .def_readonly("hover_margin", &M::hover_margin,
+                    "1 - largest share of its limit that an initial thrust takes")
+      .def_readonly("thrust_impulse", &M::thrust_impulse, "[N s]")
+      .def_readonly("peak_torque", &M::peak_torque, "(joints,) [N m]")
+      .def_readonly("peak_speed", &M::peak_speed, "(joints,) [rad/s]")
+      .def_readonly("peak_power", &M::peak_power, "(joints,) [W]");
+}
+
 void bind_log(py::module_& m) {
   py::enum_<FlightStatus>(m, "FlightStatus", "Whether the flight reached its end.")
       .value("completed", FlightStatus::kCompleted)
@@ -191,6 +215,7 @@ void bind_log(py::module_& m) {
       .def_readonly("momentum_qp", &FlightProfile::momentum_qp, "solution of the momentum QP")
       .def_readonly("torque", &FlightProfile::torque, "torque QP and rate limiter")
       .def_readonly("log", &FlightProfile::log, "checks and histories");
+  bind_measures(m);
   py::class_<FlightLog> log(m, "FlightLog",
                             "What happened in a flight: histories (read-only arrays that share the "
                             "log's memory), status and summary. SI units, world axes.");
@@ -224,7 +249,8 @@ void bind_log(py::module_& m) {
       .def_readonly("script", &FlightLog::script)
       .def_readonly("paper", &FlightLog::paper)
       .def_readonly("rms_parts", &FlightLog::rms_parts)
-      .def_readonly("script_parts", &FlightLog::script_parts);
+      .def_readonly("script_parts", &FlightLog::script_parts)
+      .def_readonly("measures", &FlightLog::measures);
 }
 
 }  // namespace

@@ -3,9 +3,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include <memory>
-#include <string>
-
+#include "bindings/keywords.hpp"
 #include "dynamics/flight_settings.hpp"
 
 namespace py = pybind11;
@@ -15,52 +13,6 @@ namespace codesign {
 using namespace dynamics;
 
 namespace {
-
-// Names and values of a settings object's attributes.
-py::dict attributes(const py::object& self) {
-  py::dict result;
-  const py::object type = py::type::of(self);
-  for (const auto& [name, entry] : type.attr("__dict__").cast<py::dict>()) {
-    if (py::hasattr(entry, "fset") && !entry.attr("fset").is_none()) {
-      result[name] = self.attr(name);
-    }
-  }
-  return result;
-}
-
-// Every key must be an attribute; an unknown one is a TypeError.
-template <typename Settings>
-std::unique_ptr<Settings> from_attributes(const py::dict& values) {
-  auto result = std::make_unique<Settings>();
-  const py::object self = py::cast(result.get(), py::return_value_policy::reference);
-  for (const auto& [name, value] : values) {
-    if (!py::hasattr(self, name)) {
-      throw py::type_error(std::string(py::str(py::type::of(self).attr("__name__"))) +
-                           " has no attribute '" + std::string(py::str(name)) + "'");
-    }
-    py::setattr(self, name, value);
-  }
-  return result;
-}
-
-// Constructor by keywords, copies, pickling and text, from the attributes bound afterwards.
-template <typename Settings>
-void bind_keywords(py::class_<Settings>& settings) {
-  settings.def(py::init([](const py::kwargs& values) { return from_attributes<Settings>(values); }))
-      .def("__copy__", [](const Settings& self) { return Settings(self); })
-      .def("__deepcopy__", [](const Settings& self, const py::dict&) { return Settings(self); })
-      .def(py::pickle([](const py::object& self) { return attributes(self); },
-                      [](const py::dict& state) { return from_attributes<Settings>(state); }))
-      .def("__repr__", [](const py::object& self) {
-        std::string text = py::str(py::type::of(self).attr("__name__"));
-        const char* separator = "(";
-        for (const auto& [name, value] : attributes(self)) {
-          text += separator + std::string(py::str(name)) + "=" + std::string(py::repr(value));
-          separator = ", ";
-        }
-        return text + ")";
-      });
-}
 
 void bind_reference_settings(py::module_& m) {
   py::enum_<Integrator>(m, "Integrator", "How the plant is advanced over a control step.")
@@ -193,7 +145,8 @@ void bind_control_settings(py::module_& m) {
       .def_readwrite("thrust_min", &Actuator::thrust_min, "[N]")
       .def_readwrite("thrust_max", &Actuator::thrust_max, "[N]")
       .def_readwrite("thrust_rate", &Actuator::thrust_rate, "largest [N/s]")
-      .def_readwrite("dynamics", &Actuator::dynamics, "RateIntegrator, FirstOrderLag or Turbine");
+      .def_readwrite("dynamics", &Actuator::dynamics,
+                     "RateIntegrator, FirstOrderLag, Turbine or StandardizedTurbine");
 
   py::class_<Disturbances> disturbances(m, "Disturbances", "What the controller does not know.");
   bind_keywords(disturbances);
@@ -304,7 +257,15 @@ void bind_settings(py::module_& m) {
       .def_readwrite("ground_height", &FlightSettings::ground_height, "[m]")
       .def_readwrite("failure", &FlightSettings::failure)
       .def_readwrite("disturbances", &FlightSettings::disturbances)
-      .def("validate", &validate, "Raise ValueError naming the first attribute that is wrong.")
+      .def_readwrite("controller", &FlightSettings::controller)
+      .def_readwrite("path", &FlightSettings::path, "replaces the commands if it has way-points")
+      .def_readwrite("pulses", &FlightSettings::pulses, "list of Pulse")
+      .def_readwrite("fuel", &FlightSettings::fuel, "of each jet")
+      .def_readwrite("predictive", &FlightSettings::predictive)
+      .def_readwrite("servo_plant", &FlightSettings::servo_plant)
+      .def(
+          "validate", [](const FlightSettings& self) { validate(self); },
+          "Raise ValueError naming the first attribute that is wrong.")
       .def_property_readonly("samples", &sample_count, "number of samples of the flight");
 }
 

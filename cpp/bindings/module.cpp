@@ -43,8 +43,10 @@ PYBIND11_MODULE(_core, m) {
 
   py::module_ dynamics = m.def_submodule("dynamics", "Rigid-body dynamics, box QP and flight.");
   codesign::bind_dynamics(dynamics);
+  codesign::bind_predictive(dynamics);
   codesign::bind_flight(dynamics);
   codesign::bind_trim(dynamics);
+  codesign::bind_predictive_controller(dynamics);
   codesign::bind_convex(dynamics);
   py::module_ fem = m.def_submodule("fem", "Surfaces, tetrahedra and linear elasticity.");
   codesign::bind_surface(fem);

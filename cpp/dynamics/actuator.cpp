@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace codesign::dynamics {
 
@@ -21,6 +22,9 @@ struct Command {
   double operator()(const Turbine& turbine) const {
     return throttle_for_rate(turbine, state, wanted_rate);
   }
+  double operator()(const StandardizedTurbine& turbine) const {
+    return throttle_for_rate(turbine, state, wanted_rate);
+  }
 };
 
 struct Advance {
@@ -37,6 +41,9 @@ struct Advance {
   ThrustState operator()(const Turbine& turbine) const {
     return dynamics::advance(turbine, state, command, step);
   }
+  ThrustState operator()(const StandardizedTurbine& turbine) const {
+    return dynamics::advance(turbine, state, command, step);
+  }
 };
 
 }  // namespace
@@ -48,6 +55,15 @@ double command_for_rate(const Actuator& actuator, const ThrustState& state, doub
 ThrustState advance(const Actuator& actuator, const ThrustState& state, double command,
                     double step) {
   return std::visit(Advance{state, command, step}, actuator.dynamics);
+}
+
+ThrustState thrust_state_rate(const Actuator& actuator, const ThrustState& state, double command) {
+  const auto* turbine = std::get_if<StandardizedTurbine>(&actuator.dynamics);
+  if (turbine == nullptr) {
+    throw std::invalid_argument("actuator \"" + actuator.frame + "\" has no standardized turbine");
+  }
+  return {state.thrust_rate,
+          thrust_acceleration(*turbine, state, throttle_variable(*turbine, command))};
 }
 
 }  // namespace codesign::dynamics

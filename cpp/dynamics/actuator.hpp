@@ -4,6 +4,7 @@
 #include <string>
 #include <variant>
 
+#include "dynamics/flying/standardized_turbine.hpp"
 #include "dynamics/jet.hpp"
 
 namespace codesign::dynamics {
@@ -16,7 +17,7 @@ struct FirstOrderLag {
   double time = 0.05;  // [s]
 };
 
-using ThrustDynamics = std::variant<RateIntegrator, FirstOrderLag, Turbine>;
+using ThrustDynamics = std::variant<RateIntegrator, FirstOrderLag, Turbine, StandardizedTurbine>;
 
 // What pushes the robot along a line fixed in a frame: a jet, a propeller. The wrench per newton of
 // thrust is the unit force along the axis and the moment `reaction` about it: the drag torque of a
@@ -36,5 +37,9 @@ double command_for_rate(const Actuator& actuator, const ThrustState& state, doub
 // State after `step` seconds of constant command.
 ThrustState advance(const Actuator& actuator, const ThrustState& state, double command,
                     double step);
+
+// (Ṫ, T̈) under a command, of dynamics that are a differential equation of their thrust and rate;
+// std::invalid_argument for those that are not.
+ThrustState thrust_state_rate(const Actuator& actuator, const ThrustState& state, double command);
 
 }  // namespace codesign::dynamics

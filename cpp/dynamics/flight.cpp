@@ -1,17 +1,17 @@
 #include "dynamics/flight.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "dynamics/disturbance.hpp"
 #include "dynamics/drives.hpp"
 #include "dynamics/flight_start.hpp"
+#include "dynamics/flying/flight_samples.hpp"
 #include "dynamics/momentum_controller.hpp"
 #include "dynamics/momentum_observer.hpp"
 #include "dynamics/objectives.hpp"
 #include "dynamics/plant.hpp"
+#include "dynamics/predictive/predictive_flight.hpp"
 #include "dynamics/torque_controller.hpp"
 #include "interrupt.hpp"
 
@@ -22,26 +22,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
-// A contact point resolved to its frame.
-struct WatchedPoint {
-  int frame;
-  Vector3d position;
-};
-
-// Adds the time since the last call to one phase after the other.
-class Stopwatch {
- public:
-  void lap(double& phase) {
-    const Clock::time_point now = Clock::now();
-    phase += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 // Everything the loop carries from step to step. The member functions are the items of one step.
 class Flight {
@@ -57,9 +37,8 @@ class Flight {
   FailureReason update_torque();
   FailureReason check_limits();
   void command_jets();
-  double lowest_point() const;
   void log_sample(int k);
-  void fail(FailureReason reason, int k);
+  void measure(int k);
 
   const Model& model_;
   const FlightSettings& settings_;
@@ -71,11 +50,14 @@ class Flight {
   Drives drives_;
   PlantInputs inputs_;
   Gusts gusts_;
-  std::vector<WatchedPoint> points_;
+  PointHeights heights_;
+  FlightMeter meter_;
+  Path path_;
   std::vector<ThrustState> jets_;
   Eigen::VectorXd thrust_, last_thrust_, thrust_rate_, command_, joint_velocity_, force_,
       joint_force_;
   ControllerOrigin origin_;
+  Pose start_;  // base rotation and center of mass that a path counts from
   ReferenceGenerator reference_generator_;
   Reference reference_;
   MomentumObserver observer_;
@@ -100,6 +82,9 @@ Flight::Flight(const Model& model, const FlightSettings& settings, const FlightS
       plant_(model, settings),
       drives_(settings),
       gusts_(settings),
+      heights_(model, settings),
+      meter_(model.joint_count(), settings.fuel),
+      path_(settings.path),
       thrust_(start.thrusts),
       last_thrust_(start.thrusts),
       reference_generator_(settings, Vector3d::Zero(), Matrix3d::Identity()),
@@ -115,9 +100,6 @@ Flight::Flight(const Model& model, const FlightSettings& settings, const FlightS
   for (Eigen::VectorXd* v : {&thrust_rate_, &command_}) v->setZero(jets);
   for (Eigen::VectorXd* v : {&joint_velocity_, &joint_force_}) v->setZero(joints);
   force_.setZero(model.dofs());
-  for (const ContactPoint& point : settings.contact_points) {
-    points_.push_back({frame_index(model, point.frame), point.position});
-  }
   for (const double thrust : start.thrusts) jets_.push_back({thrust, 0.0});
 }
 
@@ -126,6 +108,10 @@ Flight::Flight(const Model& model, const FlightSettings& settings, const FlightS
 FailureReason Flight::advance_plant(int k) {
   if (k == 0 && !settings_.initial_free_fall) return FailureReason::kNotFailed;
   inputs_.base_force = gusts_.next();
+  // The step before sample k is under the pulses that act at its start.
+  const PulseSum pulse = pulses_at(settings_.pulses, std::max(k - 1, 0) * settings_.step);
+  inputs_.com_force = pulse.force;
+  inputs_.base_moment = pulse.moment;
   for (int i = 0; i < settings_.torque_updates; ++i) {
     if (i > 0) {
       update_motion_terms(model_, state_, terms_);
@@ -158,9 +144,13 @@ bool Flight::update_dynamics() {
 FailureReason Flight::control(int k) {
   if (k == 0) {
     origin_ = controller_origin(settings_, state_, terms_);
+    start_ = {state_.base.R, terms_.com};
     reference_generator_ = ReferenceGenerator(settings_, terms_.com, state_.base.R);
   }
-  reference_ = reference_generator_.update(command_at(settings_.trajectory, k, settings_.step));
+  reference_ =
+      settings_.path.waypoints.empty()
+          ? reference_generator_.update(command_at(settings_.trajectory, k, settings_.step))
+          : path_reference(path_, k * settings_.step, start_);
 
   jet_map(terms_, task_.A);
   unmodeled_ =
@@ -217,31 +207,10 @@ FailureReason Flight::check_limits() {
   return FailureReason::kNotFailed;
 }
 
-double Flight::lowest_point() const {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const WatchedPoint& point : points_) {
-    const Frame& frame = model_.frames[static_cast<std::size_t>(point.frame)];
-    const BodyPose& body = terms_.kin.bodies[static_cast<std::size_t>(frame.body)];
-    const Vector3d on_body = frame.body_T_frame.p + frame.body_T_frame.R * point.position;
-    lowest = std::min(lowest, body.p.z() + body.R.row(2).dot(on_body));
-  }
-  return terms_.kin.base_position.z() + lowest - settings_.ground_height;
-}
-
-void write_rotation(const Matrix3d& R, History& history, int k) {
-  using RowMajorRotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  Eigen::Map<RowMajorRotation>(history.row(k).data()) = R;
-}
-
 void Flight::log_sample(int k) {
   FlightLog& log = log_;
-  log.samples = k + 1;
+  log_state(state_, terms_, k, log);
   log.time(k, 0) = k * settings_.step;
-  log.base_position.row(k) = state_.base.p.transpose();
-  write_rotation(state_.base.R, log.base_rotation, k);
-  log.joint_positions.row(k) = state_.joints.transpose();
-  log.velocity.row(k) = state_.velocity.transpose();
-  log.com.row(k) = terms_.com.transpose();
   log.com_reference.row(k) = reference_.position.transpose();
   log.com_velocity_reference.row(k) = reference_.velocity.transpose();
   write_rotation(reference_.rotation, log.rotation_reference, k);
@@ -250,7 +219,6 @@ void Flight::log_sample(int k) {
   Vector6d error = terms_.momentum;
   error.head<3>() -= mass * reference_.velocity;
   error.tail<3>() -= reference_.rotation * (origin_.base_inertia * reference_.angular_velocity);
-  log.momentum.row(k) = terms_.momentum.transpose();
   log.momentum_error.row(k) = error.transpose();
   log.unmodeled_force.row(k) = unmodeled_.transpose();
   log.thrust.row(k) = thrust_.transpose();
@@ -259,7 +227,8 @@ void Flight::log_sample(int k) {
   log.joint_velocity_command.row(k) = joint_velocity_.transpose();
   log.torque.row(k) = inputs_.torque.transpose();
   log.wind.row(k) = inputs_.base_force.transpose();
-  log.clearance(k, 0) = lowest_point();
+  log.clearance(k, 0) = heights_.lowest(terms_);
+  measure(k);
   const BoxQpResult& qp = qp_solver_.result();
   log.qp_iterations(k, 0) = qp.iterations;
   log.qp_iterations(k, 1) = torque_controller_.iterations();
@@ -268,13 +237,12 @@ void Flight::log_sample(int k) {
   log.max_attitude_error = std::max(log.max_attitude_error, attitude_error_);
 }
 
-void Flight::fail(FailureReason reason, int k) {
-  log_.status = FlightStatus::kFailed;
-  log_.failure_reason = reason;
-  log_.failure_time = k * settings_.step;
-  if (reason == FailureReason::kMomentumQp || reason == FailureReason::kTorqueQp) {
-    ++log_.qp_failures;
-  }
+void Flight::measure(int k) {
+  const bool last = k + 1 == sample_count(settings_);
+  const Vector3d rpy_error =
+      angle_difference(rotation_to_rpy(state_.base.R), rotation_to_rpy(reference_.rotation));
+  meter_.add(last ? 0.0 : settings_.step, terms_.com - reference_.position, rpy_error,
+             attitude_error_, inputs_.torque, state_.velocity.tail(model_.joint_count()), thrust_);
 }
 
 FlightLog Flight::run() {
@@ -282,8 +250,8 @@ FlightLog Flight::run() {
   log_ =
       make_flight_log(samples, model_.joint_count(), static_cast<int>(settings_.actuators.size()));
   log_.step = settings_.step;
-  if (!hovers_) fail(FailureReason::kNoHover, 0);
-  if (!update_dynamics()) fail(FailureReason::kSingularMass, 0);
+  if (!hovers_) set_failure(FailureReason::kNoHover, 0.0, log_);
+  if (!update_dynamics()) set_failure(FailureReason::kSingularMass, 0.0, log_);
   watch_ = {};
   for (int k = 0; k < samples && log_.status == FlightStatus::kCompleted; ++k) {
     check_interrupt();
@@ -302,9 +270,10 @@ FlightLog Flight::run() {
       log_sample(k);
       watch_.lap(log_.profile.log);
     }
-    if (reason != FailureReason::kNotFailed) fail(reason, k);
+    if (reason != FailureReason::kNotFailed) set_failure(reason, k * settings_.step, log_);
   }
   if (settings_.tank) log_.fuel_burnt = settings_.tank->fuel - plant_.fuel_left();
+  log_.measures = meter_.result();
   return std::move(log_);
 }
 
@@ -325,7 +294,10 @@ void summarize(const Model& model, const FlightSettings& settings, FlightLog& lo
 FlightLog simulate_flight(const Model& model, const FlightSettings& asked) {
   const FlightSettings settings = fitted(model, asked);
   const FlightStart start = flight_start(model, settings);
-  FlightLog log = Flight(model, settings, start).run();
+  FlightLog log = settings.controller == Controller::kPredictive
+                      ? simulate_predictive_flight(model, settings, start)
+                      : Flight(model, settings, start).run();
+  log.measures.hover_margin = hover_margin(settings.actuators, start.thrusts);
   if (log.samples < log.time.rows()) truncate(log);
   summarize(model, settings, log);
   return log;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/flying/flight_measures.hpp"
+
 namespace codesign::dynamics {
 
 // A row per sample; row-major, so that a view from Python is C-contiguous.
@@ -91,6 +93,8 @@ struct FlightLog {
   int qp_failures = 0;
   long total_qp_iterations = 0;
   FlightProfile profile;
+
+  FlightMeasures measures;
 
   // Objective families (docs/flight.md): rms (SI, independent of the step), script (as the authors'
   // program computes it), paper (as printed).

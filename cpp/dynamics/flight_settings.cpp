@@ -85,14 +85,8 @@ void validate_actuators(const FlightSettings& s) {
   require_unique("actuators", frames);
 }
 
-void validate_robot(const FlightSettings& s) {
-  require_unique("joints", s.joints);
-  validate_actuators(s);
-  if (s.actuators.empty()) refuse("actuators", "is empty");
+void validate_joint_limits(const FlightSettings& s) {
   const std::size_t joints = s.joints.size();
-  const std::size_t jets = s.actuators.size();
-  require_size("initial_joints", s.initial_joints, joints, "joint");
-  require_size("initial_thrusts", s.initial_thrusts, jets, "jet");
   require_size("gains.posture", s.gains.posture, joints, "joint");
   if (s.limits.joint_lower.size() > 0 || s.limits.joint_upper.size() > 0) {
     require_size("limits.joint_lower", s.limits.joint_lower, joints, "joint");
@@ -106,6 +100,17 @@ void validate_robot(const FlightSettings& s) {
              "the range of joint \"" + s.joints[static_cast<std::size_t>(i)] + "\" is empty");
     }
   }
+}
+
+void validate_robot(const FlightSettings& s) {
+  require_unique("joints", s.joints);
+  validate_actuators(s);
+  if (s.actuators.empty()) refuse("actuators", "is empty");
+  const std::size_t joints = s.joints.size();
+  const std::size_t jets = s.actuators.size();
+  require_size("initial_joints", s.initial_joints, joints, "joint");
+  require_size("initial_thrusts", s.initial_thrusts, jets, "jet");
+  if (s.controller == Controller::kMomentumQp) validate_joint_limits(s);
   for (const auto& [a, b] : s.symmetry_pairs) {
     const int count = static_cast<int>(jets);
     if (a == b || std::min(a, b) < 0 || std::max(a, b) >= count) {
@@ -148,6 +153,9 @@ void validate_control(const FlightSettings& s) {
   require_positive("limits.thrust_slope", s.limits.thrust_slope);
   require_positive("limits.torque", s.limits.torque);
   require_positive("limits.torque_rate", s.limits.torque_rate);
+}
+
+void validate_failure(const FlightSettings& s) {
   require_positive("failure.com_error", s.failure.com_error);
   require_positive("failure.attitude_error", s.failure.attitude_error);
   require_positive("failure.joint_speed", s.failure.joint_speed);
@@ -217,14 +225,31 @@ void validate_disturbances(const FlightSettings& s) {
   }
 }
 
+void validate_predictive(const FlightSettings& s) {
+  if (s.predictive.period != s.step) refuse("predictive.period", "is not `step`");
+  if (!s.trajectory.empty()) {
+    refuse("trajectory", "the predictive controller flies way-points, not commands");
+  }
+  const bool friction = s.friction.viscous.size() > 0 || s.friction.coulomb.size() > 0;
+  const bool late = s.delays.momentum > 0.0 || s.delays.torque > 0.0 || s.delays.torque_lag > 0.0;
+  if (friction || late || !s.drag.empty() || s.tank) {
+    refuse("controller", "predictive flights have no friction, delays, drag and tank");
+  }
+  validate(s.predictive);
+  validate(s.servo_plant, static_cast<Eigen::Index>(s.joints.size()));
+}
+
 }  // namespace
 
 void validate(const FlightSettings& settings) {
   validate_run(settings);
   validate_robot(settings);
-  validate_control(settings);
+  if (settings.controller == Controller::kMomentumQp) validate_control(settings);
   validate_plant(settings);
   validate_disturbances(settings);
+  validate_failure(settings);
+  validate(settings.pulses);
+  if (settings.controller == Controller::kPredictive) validate_predictive(settings);
 }
 
 int sample_count(const FlightSettings& settings) {

@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "dynamics/actuator.hpp"
+#include "dynamics/flying/flight_measures.hpp"
+#include "dynamics/flying/waypoints.hpp"
+#include "dynamics/predictive/settings.hpp"
 #include "dynamics/trim.hpp"
 
 namespace codesign::dynamics {
@@ -144,7 +147,13 @@ struct Disturbances {
   std::uint64_t seed = 0;
 };
 
+enum class Controller {
+  kMomentumQp,  // momentum and torque QPs, torque-driven joints
+  kPredictive,  // multi-rate predictive control, joints with position servos
+};
+
 struct FlightSettings {
+  Controller controller = Controller::kMomentumQp;
   double step = 0.0;       // of the momentum loop, jets and samples [s]
   double duration = 0.0;   // [s]; samples at 0, step, … up to and including the end
   int torque_updates = 1;  // of the torque loop per step, evenly spaced
@@ -186,6 +195,12 @@ struct FlightSettings {
   double ground_height = 0.0;  // [m]
   FailureLimits failure;
   Disturbances disturbances;
+  WaypointPath path;  // replaces the commands if it has way-points
+  std::vector<Pulse> pulses;
+  FuelRate fuel;  // of each jet
+
+  PredictiveSettings predictive;  // of Controller::kPredictive; period is `step`
+  ServoPlantSettings servo_plant;
 };
 
 // Throws std::invalid_argument naming the first attribute that has a wrong size, sign or value.

@@ -17,7 +17,9 @@ FlightSettings fitted(const Model& model, const FlightSettings& settings) {
         "joints=settings.joints");
   }
   FlightSettings result = settings;
-  if (settings.limits.joint_lower.size() == 0) {
+  const bool predictive = settings.controller == Controller::kPredictive;
+  if (predictive) result.limits.joint_range_scale.setOnes(model.joint_count());
+  if (predictive || settings.limits.joint_lower.size() == 0) {
     result.limits.joint_lower.resize(model.joint_count());
     result.limits.joint_upper.resize(model.joint_count());
     for (Eigen::Index j = 0; j < model.joint_count(); ++j) {

@@ -18,13 +18,11 @@ RobotState zero_state(const Model& model) {
   return {Pose{}, Eigen::VectorXd::Zero(model.joint_count()), Eigen::VectorXd::Zero(model.dofs())};
 }
 
-// Rate of the rotation vector θ in R = Exp(θ) R₀ when R turns with ω: the inverse of the
-// exponential's differential, to fourth order in θ.
+}  // namespace
+
 Vector3d rotation_vector_rate(const Vector3d& theta, const Vector3d& omega) {
   return omega - 0.5 * theta.cross(omega) + theta.cross(theta.cross(omega)) / 12.0;
 }
-
-}  // namespace
 
 void displace(const Eigen::Ref<const Eigen::VectorXd>& displacement, RobotState& state) {
   state.base.p += displacement.head<3>();
@@ -88,6 +86,8 @@ void Plant::acceleration(const RobotState& state, const RobotTerms& terms, Joint
   drag_.add_forces(model_, terms, force_);
   const Eigen::Index joints = state.joints.size();
   add_friction(friction_, state.velocity.tail(joints), force_.tail(joints));
+  if (!inputs.com_force.isZero(0.0)) add_com_force(terms, inputs.com_force, force_);
+  force_.segment<3>(3) += inputs.base_moment;
   joint_space.acceleration(inputs.torque, force_, nu_dot_);
 }
 

@@ -14,6 +14,9 @@ struct PlantInputs {
   Eigen::VectorXd torque;      // (joints) [Nm]
   Eigen::VectorXd thrust;      // (jets) [N], as commanded: errors of the jets are the plant's
   Eigen::Vector3d base_force;  // on the base's origin, world axes [N]
+  Eigen::Vector3d com_force =
+      Eigen::Vector3d::Zero();  // on the base, through the center of mass [N]
+  Eigen::Vector3d base_moment = Eigen::Vector3d::Zero();  // on the base, world axes [N m]
 };
 
 // The flying robot: advances a state by one period of the torque loop under held inputs.
@@ -58,5 +61,9 @@ class Plant {
 
 // q ⊕ displacement: positions add, the rotation vector (world axes) turns the base.
 void displace(const Eigen::Ref<const Eigen::VectorXd>& displacement, RobotState& state);
+
+// Rate of the rotation vector θ in R = Exp(θ) R₀ when R turns with ω: the inverse of the
+// exponential's differential, to fourth order in θ.
+Eigen::Vector3d rotation_vector_rate(const Eigen::Vector3d& theta, const Eigen::Vector3d& omega);
 
 }  // namespace codesign::dynamics

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/spatial.hpp"
-
 namespace codesign::dynamics {
 
 using Eigen::Matrix3d;
@@ -71,6 +69,21 @@ const Reference& ReferenceGenerator::update(const Command& command) {
   // The second term pulls the explicit step back to the orthogonal matrices.
   smooth_rotation_ += step_ * (R * skew(rate) + (Matrix3d::Identity() - R * R.transpose()) * R);
   return reference_;
+}
+
+Reference path_reference(const Path& path, double time, const Pose& start) {
+  const PathPoint point = path.at(time);
+  Reference reference;
+  reference.position = start.p + point.value.head<3>();
+  reference.velocity = point.velocity.head<3>();
+  reference.acceleration = point.acceleration.head<3>();
+  reference.jerk = point.jerk.head<3>();
+  reference.rotation = rpy_to_rotation({0.0, 0.0, point.value[3]}) * start.R;
+  const Vector3d vertical = start.R.transpose().col(2);  // in base axes, also when turned
+  reference.angular_velocity = point.velocity[3] * vertical;
+  reference.angular_acceleration = point.acceleration[3] * vertical;
+  reference.angular_jerk = point.jerk[3] * vertical;
+  return reference;
 }
 
 }  // namespace codesign::dynamics

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 
 #include "dynamics/flight_settings.hpp"
+#include "dynamics/flying/waypoints.hpp"
 #include "dynamics/motion_filter.hpp"
+#include "dynamics/spatial.hpp"
 
 namespace codesign::dynamics {
 
@@ -43,5 +45,9 @@ class ReferenceGenerator {
   MotionFilter com_filter_, jerk_filter_, angular_filter_;
   Reference reference_;
 };
+
+// What the path asks for at a time; start: the base's rotation and the center of mass that it
+// counts from. The base turns about the world's vertical.
+Reference path_reference(const Path& path, double time, const Pose& start);
 
 }  // namespace codesign::dynamics

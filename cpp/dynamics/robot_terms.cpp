@@ -87,6 +87,12 @@ void add_point_force(const Model& model, const KinematicsData& kin, int body, co
   }
 }
 
+void add_com_force(const RobotTerms& terms, const Vector3d& force,
+                   Eigen::Ref<Eigen::VectorXd> generalized) {
+  generalized.head<3>() += force;
+  generalized.segment<3>(3) += terms.inertia.subtrees[0].com.cross(force);
+}
+
 void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A) {
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
     const MountedActuator& jet = terms.jets[i];

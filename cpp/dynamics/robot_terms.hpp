@@ -64,6 +64,11 @@ void add_jet_forces(const Model& model, const RobotTerms& terms,
                     const Eigen::Ref<const Eigen::VectorXd>& thrusts,
                     Eigen::Ref<Eigen::VectorXd> generalized);
 
+// generalized (6+n,) += a force on the base whose line goes through the robot's center of mass,
+// world axes [N].
+void add_com_force(const RobotTerms& terms, const Eigen::Vector3d& force,
+                   Eigen::Ref<Eigen::VectorXd> generalized);
+
 // Column i of A (6, jets): rate of (l; w) per newton of jet i.
 void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A);
 

@@ -21,6 +21,7 @@ __all__: list[str] = [
     "FailureLimits",
     "FirstOrderLag",
     "FlightLog",
+    "FlightMeasures",
     "FlightObjectives",
     "FlightProfile",
     "FlightSettings",
@@ -28,11 +29,22 @@ __all__: list[str] = [
     "Friction",
     "Gains",
     "Integrator",
+    "JetPrediction",
     "JointGroup",
     "Limits",
     "MAX_URDF_BYTES",
     "Model",
     "ObjectiveParts",
+    "Path",
+    "PathPoint",
+    "PredictionModel",
+    "PredictionState",
+    "PredictiveController",
+    "PredictiveIntegral",
+    "PredictiveModelOptions",
+    "PredictiveSettings",
+    "PredictiveWeights",
+    "Pulse",
     "QpStatus",
     "RateIntegrator",
     "ReferenceSettings",
@@ -40,6 +52,9 @@ __all__: list[str] = [
     "Trim",
     "TrimSettings",
     "Turbine",
+    "Waypoint",
+    "WaypointKind",
+    "WaypointPath",
     "Weights",
     "bias_forces",
     "center_of_mass",
@@ -116,6 +131,669 @@ class Model:
         """
         Mass of all links [kg].
         """
+
+class Controller:
+    """
+    What flies the robot.
+
+    Members:
+
+      momentum_qp : momentum and torque QPs
+
+      predictive : multi-rate predictive control, servos
+    """
+
+    __members__: typing.ClassVar[dict[str, Controller]]
+    momentum_qp: typing.ClassVar[Controller]
+    predictive: typing.ClassVar[Controller]
+    @typing.overload
+    def __eq__(self, other: Controller) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Controller) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class WaypointKind:
+    """
+    How a path goes through its way-points.
+
+    Members:
+
+      stop : at rest in each: minimum-jerk legs
+
+      through : least squared jerk, at rest at both ends
+    """
+
+    __members__: typing.ClassVar[dict[str, WaypointKind]]
+    stop: typing.ClassVar[WaypointKind]
+    through: typing.ClassVar[WaypointKind]
+    @typing.overload
+    def __eq__(self, other: WaypointKind) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: WaypointKind) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Waypoint:
+    """
+    A point of a path, relative to its start.
+    """
+    def __copy__(self) -> Waypoint: ...
+    def __deepcopy__(self, arg0: dict) -> Waypoint: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def duration(self) -> float:
+        """
+        to get there [s]
+        """
+    @duration.setter
+    def duration(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) world axes [m]
+        """
+    @position.setter
+    def position(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def rest(self) -> float:
+        """
+        there [s]
+        """
+    @rest.setter
+    def rest(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def yaw(self) -> float:
+        """
+        [rad]
+        """
+    @yaw.setter
+    def yaw(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class WaypointPath:
+    """
+    A path through way-points.
+    """
+
+    kind: WaypointKind
+    def __copy__(self) -> WaypointPath: ...
+    def __deepcopy__(self, arg0: dict) -> WaypointPath: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def start(self) -> float:
+        """
+        time at the start position [s]
+        """
+    @start.setter
+    def start(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def waypoints(self) -> list[Waypoint]:
+        """
+        list of Waypoint
+        """
+    @waypoints.setter
+    def waypoints(self, arg0: collections.abc.Sequence[Waypoint]) -> None: ...
+
+class PathPoint:
+    """
+    Position (x, y, z) and yaw of a path, derivatives.
+    """
+    @property
+    def acceleration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,)
+        """
+    @property
+    def jerk(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,)
+        """
+    @property
+    def value(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,) [m, rad]
+        """
+    @property
+    def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
+        """
+        (4,)
+        """
+
+class Path:
+    """
+    A path as functions of time; after its end it holds.
+    """
+    def __init__(self, path: WaypointPath) -> None: ...
+    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> PathPoint: ...
+    @property
+    def end(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def peak_acceleration(self) -> float:
+        """
+        [m/s^2]
+        """
+    @property
+    def peak_speed(self) -> float:
+        """
+        [m/s]
+        """
+
+class Pulse:
+    """
+    Force on the base through the center of mass, and moment on the base.
+    """
+    def __copy__(self) -> Pulse: ...
+    def __deepcopy__(self, arg0: dict) -> Pulse: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @duration.setter
+    def duration(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) world axes [N]
+        """
+    @force.setter
+    def force(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def moment(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) world axes [N m]
+        """
+    @moment.setter
+    def moment(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def start(self) -> float:
+        """
+        [s]
+        """
+    @start.setter
+    def start(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class StandardizedTurbine:
+    """
+    Second-order jet identified in standardized variables T, D, U: T'' = thrust_scale (f + g v), v = U + B_UU U^2, f = c + K_T T + K_D D + K_TD T D + K_TT T^2 + K_DD D^2, g the same with B.
+    """
+    def __copy__(self) -> StandardizedTurbine: ...
+    def __deepcopy__(self, arg0: dict) -> StandardizedTurbine: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    def steady_variable(self, thrust: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        v that holds a thrust [N]
+        """
+    def throttle(self, variable: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        [%] of v, within its range
+        """
+    def variable(self, throttle: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        v of a throttle [%]
+        """
+    @property
+    def B(self) -> float: ...
+    @B.setter
+    def B(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_D(self) -> float: ...
+    @B_D.setter
+    def B_D(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_DD(self) -> float: ...
+    @B_DD.setter
+    def B_DD(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_T(self) -> float: ...
+    @B_T.setter
+    def B_T(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_TD(self) -> float: ...
+    @B_TD.setter
+    def B_TD(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_TT(self) -> float: ...
+    @B_TT.setter
+    def B_TT(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def B_UU(self) -> float: ...
+    @B_UU.setter
+    def B_UU(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_D(self) -> float: ...
+    @K_D.setter
+    def K_D(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_DD(self) -> float: ...
+    @K_DD.setter
+    def K_DD(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_T(self) -> float: ...
+    @K_T.setter
+    def K_T(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_TD(self) -> float: ...
+    @K_TD.setter
+    def K_TD(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def K_TT(self) -> float: ...
+    @K_TT.setter
+    def K_TT(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def c(self) -> float: ...
+    @c.setter
+    def c(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def rate_gain(self) -> float:
+        """
+        of a loop that follows a thrust rate [1/s]
+        """
+    @rate_gain.setter
+    def rate_gain(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def throttle_max(self) -> float:
+        """
+        [%]
+        """
+    @throttle_max.setter
+    def throttle_max(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def throttle_mean(self) -> float:
+        """
+        [%]
+        """
+    @throttle_mean.setter
+    def throttle_mean(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def throttle_scale(self) -> float:
+        """
+        [%]
+        """
+    @throttle_scale.setter
+    def throttle_scale(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_mean(self) -> float:
+        """
+        [N]
+        """
+    @thrust_mean.setter
+    def thrust_mean(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def thrust_scale(self) -> float:
+        """
+        [N]
+        """
+    @thrust_scale.setter
+    def thrust_scale(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class PredictiveWeights:
+    """
+    Weights of the prediction's cost.
+    """
+    def __copy__(self) -> PredictiveWeights: ...
+    def __deepcopy__(self, arg0: dict) -> PredictiveWeights: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def angular_momentum(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) axes of the body
+        """
+    @angular_momentum.setter
+    def angular_momentum(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def attitude(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) roll, pitch, yaw
+        """
+    @attitude.setter
+    def attitude(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def attitude_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,)
+        """
+    @attitude_integral.setter
+    def attitude_integral(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def com(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,)
+        """
+    @com.setter
+    def com(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def com_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,)
+        """
+    @com_integral.setter
+    def com_integral(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def joint_displacement(self) -> float: ...
+    @joint_displacement.setter
+    def joint_displacement(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def linear_momentum(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) axes of the body
+        """
+    @linear_momentum.setter
+    def linear_momentum(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
+    @property
+    def posture(self) -> float: ...
+    @posture.setter
+    def posture(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def throttle_change(self) -> float: ...
+    @throttle_change.setter
+    def throttle_change(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def throttle_first(self) -> float: ...
+    @throttle_first.setter
+    def throttle_first(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class PredictiveIntegral:
+    """
+    Where integrals of errors start.
+
+    Members:
+
+      restart : at the present error, as published
+
+      accumulate : at the sum of all errors so far
+    """
+
+    __members__: typing.ClassVar[dict[str, PredictiveIntegral]]
+    accumulate: typing.ClassVar[PredictiveIntegral]
+    restart: typing.ClassVar[PredictiveIntegral]
+    @typing.overload
+    def __eq__(self, other: PredictiveIntegral) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: PredictiveIntegral) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class PredictiveModelOptions:
+    """
+    What the prediction knows.
+    """
+    def __copy__(self) -> PredictiveModelOptions: ...
+    def __deepcopy__(self, arg0: dict) -> PredictiveModelOptions: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def gravity_coupling(self) -> bool:
+        """
+        gravity turns with the predicted attitude; published: False
+        """
+    @gravity_coupling.setter
+    def gravity_coupling(self, arg0: bool) -> None: ...
+    @property
+    def jet_dynamics(self) -> bool:
+        """
+        False: thrust follows the throttle at once
+        """
+    @jet_dynamics.setter
+    def jet_dynamics(self, arg0: bool) -> None: ...
+    @property
+    def varying(self) -> bool:
+        """
+        False: the linearization of the first solve is kept
+        """
+    @varying.setter
+    def varying(self, arg0: bool) -> None: ...
+
+class PredictiveSettings:
+    """
+    Multi-rate predictive control.
+    """
+
+    integral: PredictiveIntegral
+    model: PredictiveModelOptions
+    weights: PredictiveWeights
+    def __copy__(self) -> PredictiveSettings: ...
+    def __deepcopy__(self, arg0: dict) -> PredictiveSettings: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def body(self) -> str:
+        """
+        link whose attitude is controlled
+        """
+    @body.setter
+    def body(self, arg0: str) -> None: ...
+    @property
+    def control_steps(self) -> int:
+        """
+        steps with joint inputs of their own
+        """
+    @control_steps.setter
+    def control_steps(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def joint_speed(self) -> float:
+        """
+        largest [rad/s]; infinity: no bound
+        """
+    @joint_speed.setter
+    def joint_speed(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def joints(self) -> list[str]:
+        """
+        names of the joints that are moved
+        """
+    @joints.setter
+    def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def large_step(self) -> float:
+        """
+        [s]
+        """
+    @large_step.setter
+    def large_step(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def large_steps(self) -> int: ...
+    @large_steps.setter
+    def large_steps(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def period(self) -> float:
+        """
+        of solves and joint set points [s]
+        """
+    @period.setter
+    def period(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def small_steps(self) -> int:
+        """
+        adding up to large_step
+        """
+    @small_steps.setter
+    def small_steps(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def throttle_every(self) -> int:
+        """
+        solves
+        """
+    @throttle_every.setter
+    def throttle_every(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+
+class ServoSettings:
+    """
+    Position servos: k_p (s* - s) - k_d s', k_d = passive + 2 ratio sqrt(k_p M_jj).
+    """
+    def __copy__(self) -> ServoSettings: ...
+    def __deepcopy__(self, arg0: dict) -> ServoSettings: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def damping_ratio(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,)
+        """
+    @damping_ratio.setter
+    def damping_ratio(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def passive(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [N m s/rad]
+        """
+    @passive.setter
+    def passive(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def stiffness(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) k_p [N m/rad]
+        """
+    @stiffness.setter
+    def stiffness(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+
+class ServoIntegrator:
+    """
+    How a robot with servos is advanced.
+
+    Members:
+
+      implicit : servos implicit, one mass matrix a step
+
+      runge_kutta_4 : fourth order, robot and jets
+    """
+
+    __members__: typing.ClassVar[dict[str, ServoIntegrator]]
+    implicit: typing.ClassVar[ServoIntegrator]
+    runge_kutta_4: typing.ClassVar[ServoIntegrator]
+    @typing.overload
+    def __eq__(self, other: ServoIntegrator) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ServoIntegrator) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class ServoPlantSettings:
+    """
+    A robot with position servos.
+    """
+
+    integrator: ServoIntegrator
+    servo: ServoSettings
+    def __copy__(self) -> ServoPlantSettings: ...
+    def __deepcopy__(self, arg0: dict) -> ServoPlantSettings: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def step(self) -> float:
+        """
+        at most [s]
+        """
+    @step.setter
+    def step(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class FuelRate:
+    """
+    Fuel of one jet: idle + per_newton T.
+    """
+    def __copy__(self) -> FuelRate: ...
+    def __deepcopy__(self, arg0: dict) -> FuelRate: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def idle(self) -> float:
+        """
+        [kg/s]
+        """
+    @idle.setter
+    def idle(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def per_newton(self) -> float:
+        """
+        [kg/s/N]
+        """
+    @per_newton.setter
+    def per_newton(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
 class QpStatus:
     """
@@ -779,12 +1457,12 @@ class Actuator:
     @axis.setter
     def axis(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
     @property
-    def dynamics(self) -> RateIntegrator | FirstOrderLag | Turbine:
+    def dynamics(self) -> RateIntegrator | FirstOrderLag | Turbine | StandardizedTurbine:
         """
-        RateIntegrator, FirstOrderLag or Turbine
+        RateIntegrator, FirstOrderLag, Turbine or StandardizedTurbine
         """
     @dynamics.setter
-    def dynamics(self, arg0: RateIntegrator | FirstOrderLag | Turbine) -> None: ...
+    def dynamics(self, arg0: RateIntegrator | FirstOrderLag | Turbine | StandardizedTurbine) -> None: ...
     @property
     def reaction(self) -> float:
         """
@@ -1063,6 +1741,38 @@ class Tank:
     @position.setter
     def position(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
 
+class TrimSettings:
+    """
+    Which hover a flight starts in.
+    """
+    def __copy__(self) -> TrimSettings: ...
+    def __deepcopy__(self, arg0: dict) -> TrimSettings: ...
+    def __getstate__(self) -> dict: ...
+    def __init__(self, **kwargs) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def joints(self) -> list[str]:
+        """
+        names of those that may move
+        """
+    @joints.setter
+    def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def thrust_weight(self) -> float:
+        """
+        [1/N]
+        """
+    @thrust_weight.setter
+    def thrust_weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def tilt_weight(self) -> float:
+        """
+        [1/rad]
+        """
+    @tilt_weight.setter
+    def tilt_weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
 class FlightSettings:
     """
     Everything that decides a flight besides the robot; SI units. Vectors over joints have the order of `joints`, vectors over jets that of `actuators`. Assign lists and arrays whole.
@@ -1076,7 +1786,10 @@ class FlightSettings:
     gains: Gains
     integrator: Integrator
     limits: Limits
+    predictive: PredictiveSettings
     reference: ReferenceSettings
+    servo_plant: ServoPlantSettings
+    trim: TrimSettings
     weights: Weights
     def __copy__(self) -> FlightSettings: ...
     def __deepcopy__(self, arg0: dict) -> FlightSettings: ...
@@ -1127,6 +1840,13 @@ class FlightSettings:
         """
     @duration.setter
     def duration(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def fuel(self) -> FuelRate:
+        """
+        of each jet
+        """
+    @fuel.setter
+    def fuel(self, arg0: FuelRate) -> None: ...
     @property
     def ground_height(self) -> float:
         """
@@ -1195,6 +1915,13 @@ class FlightSettings:
         """
         number of samples of the flight
         """
+    @property
+    def start_in_trim(self) -> bool:
+        """
+        start in the hover nearest to the initial state
+        """
+    @start_in_trim.setter
+    def start_in_trim(self, arg0: bool) -> None: ...
     @property
     def step(self) -> float:
         """
@@ -1348,6 +2075,81 @@ class FlightProfile:
         torque QP and rate limiter
         """
 
+class FlightMeasures:
+    """
+    Tracking, energy and fuel of a flight.
+    """
+    @property
+    def attitude_error_rms(self) -> float:
+        """
+        of the norm of the roll, pitch and yaw errors [rad]
+        """
+    @property
+    def com_error_rms(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def final_com_error(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def fuel(self) -> float:
+        """
+        [kg]
+        """
+    @property
+    def hover_margin(self) -> float:
+        """
+        1 - largest share of its limit that an initial thrust takes
+        """
+    @property
+    def max_attitude_error(self) -> float:
+        """
+        norm of the roll, pitch and yaw errors [rad]
+        """
+    @property
+    def max_com_error(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def mechanical_energy(self) -> float:
+        """
+        sum over the joints of the integral of |torque velocity| [J]
+        """
+    @property
+    def peak_power(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [W]
+        """
+    @property
+    def peak_speed(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [rad/s]
+        """
+    @property
+    def peak_torque(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [N m]
+        """
+    @property
+    def pose_error_rms(self) -> float:
+        """
+        of sqrt(|center of mass error|^2 + (1 m angle)^2) [m]
+        """
+    @property
+    def positive_energy(self) -> float:
+        """
+        of its positive part [J]
+        """
+    @property
+    def thrust_impulse(self) -> float:
+        """
+        [N s]
+        """
+
 class FlightLog:
     """
     What happened in a flight: histories (read-only arrays that share the log's memory), status and summary. SI units, world axes.
@@ -1446,6 +2248,8 @@ class FlightLog:
         """
         [Nm]
         """
+    @property
+    def measures(self) -> FlightMeasures: ...
     @property
     def min_clearance(self) -> float:
         """
@@ -1570,6 +2374,187 @@ class Trim:
         """
         (actuators,) inside their ranges [N]
         """
+
+class JetPrediction:
+    """
+    Linear jet of a prediction.
+    """
+    @property
+    def constant(self) -> float: ...
+    @property
+    def per_rate(self) -> float: ...
+    @property
+    def per_thrust(self) -> float: ...
+    @property
+    def per_variable(self) -> float: ...
+    @property
+    def static_gain(self) -> float: ...
+    @property
+    def thrust(self) -> float: ...
+    @property
+    def thrust_rate(self) -> float: ...
+    @property
+    def variable(self) -> float: ...
+
+class PredictionModel:
+    """
+    The robot as the predictive controller sees it; body axes.
+    """
+    @property
+    def angular_velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,)
+        """
+    @property
+    def force_of_joint(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
+        """
+        (3, joints) [N/rad]
+        """
+    @property
+    def force_of_thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
+        """
+        (3, jets)
+        """
+    @property
+    def inertia(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        (3, 3)
+        """
+    @property
+    def jets(self) -> list[JetPrediction]:
+        """
+        list of JetPrediction
+        """
+    @property
+    def mass(self) -> float: ...
+    @property
+    def moment_of_joint(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
+        """
+        (3, joints) [N m/rad]
+        """
+    @property
+    def moment_of_thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
+        """
+        (3, jets)
+        """
+    @property
+    def rpy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,)
+        """
+    @property
+    def rpy_rate(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        (3, 3) of the angular momentum
+        """
+    @property
+    def weight(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,)
+        """
+    @property
+    def weight_per_rpy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        (3, 3)
+        """
+    @property
+    def world_R_body(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        (3, 3)
+        """
+
+class PredictionState:
+    """
+    What a prediction starts from.
+    """
+    @property
+    def angular_momentum(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        body axes
+        """
+    @property
+    def com(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    @property
+    def com_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    @property
+    def linear_momentum(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        body axes
+        """
+    @property
+    def rpy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    @property
+    def rpy_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    @property
+    def thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def thrust_rate(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
+class PredictiveController:
+    """
+    Single solves of the predictive controller, to look into it.
+    """
+    def __init__(self, model: Model, settings: FlightSettings) -> None: ...
+    def solve(
+        self,
+        k: typing.SupportsInt | typing.SupportsIndex,
+        base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+        joints: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        thrusts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        thrust_rates: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> QpStatus:
+        """
+        The k-th solve, at time k period; moves set points and throttles if it is solved.
+        """
+    def start(
+        self,
+        base_pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+        joints: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        thrusts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        set_points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> None:
+        """
+        Begin at a state at rest: its center of mass and attitude are the path's start, the set points home, the throttles those that hold the thrusts.
+        """
+    @property
+    def gradient(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def hessian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    @property
+    def joint_columns(self) -> list[int]:
+        """
+        first unknown of each block of joint displacements
+        """
+    @property
+    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def prediction(self) -> PredictionModel: ...
+    @property
+    def result(self) -> BoxQpResult: ...
+    @property
+    def set_points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def state(self) -> PredictionState: ...
+    @property
+    def step_ends(self) -> list[float]:
+        """
+        of the prediction's steps from the solve [s]
+        """
+    @property
+    def throttle_columns(self) -> list[int]:
+        """
+        first unknown of each block of throttle variables
+        """
+    @property
+    def throttles(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        [%]
+        """
+    @property
+    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def variables(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
 def bias_forces(
     model: Model,

@@ -14,7 +14,7 @@ import numpy as np
 from codesign import _core
 from codesign import dynamics as dyn
 from codesign.chain.documents import flight_document, objective_families
-from codesign.chain.flight import find_trajectory, flight_seeds, flight_settings, joint_names, refusals
+from codesign.chain.flight import find_trajectory, flight_duration, flight_seeds, flight_settings, joint_names, refusals
 from codesign.chain.flown import decided_cases, with_flown
 from codesign.chain.judge import judge
 from codesign.chain.loads import asked_of, carried_masses, case_settings, flown_settings
@@ -29,9 +29,11 @@ from codesign.parts.strength import Confirmation, confirm, part_document
 from codesign.problem.design_space import Design, DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.robot.assembly import PartBody, assemble
+from codesign.robot.changes import change_robot
 from codesign.robot.clearance import convex_pieces, flown_interference
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
+from codesign.study.choices import numbers_of
 from codesign.study.config import StudyConfig
 from codesign.study.parts import make_part
 from codesign.transforms import Matrix
@@ -135,7 +137,7 @@ def _evaluate(
     known = _known_documents(keys, cache)
     answers = {name: _ANSWERS[keys[name]] for name in parts if keys[name] in _ANSWERS}
     masses = {name: _mass(known[name]) if name in known else part.mass_properties() for name, part in parts.items()}
-    robot = _assemble(study, config, parts, masses)
+    robot = _assemble(study, values, config, parts, masses)
     wanted = [name for name in parts if name not in known or (stress[name].flown and name not in answers)]
     cases = {name: part_case(parts[name], stress[name]) for name in wanted}
     built = time.perf_counter()
@@ -212,7 +214,8 @@ def flown_document(
 ) -> dict[str, Any]:
     """What an evaluation says of its flights before clearances; objective families only if all were completed."""
     name = trajectory or config.flown.trajectory
-    flight = flight_document(name, logs, config.flown, seconds, flight_seeds(config, name))
+    wanted = flight_duration(config.flown, find_trajectory(config, name))
+    flight = flight_document(name, logs, config.flown, seconds, flight_seeds(config, name), wanted)
     return {
         "flight": flight,
         "objective_families": objective_families(logs) if flight["completed"] else {},
@@ -278,14 +281,20 @@ def build_robot(study: StudyData, design: Mapping[str, DesignValue]) -> RobotDes
     """The base robot with this design's parts in it."""
     config = study.configured(design)
     parts = build_parts(study, design, config)
-    return _assemble(study, config, parts, {name: part.mass_properties() for name, part in parts.items()})
+    return _assemble(study, design, config, parts, {name: part.mass_properties() for name, part in parts.items()})
 
 
 def _assemble(
-    study: StudyData, config: StudyConfig, parts: Mapping[str, Part], masses: Mapping[str, Any]
+    study: StudyData,
+    design: Mapping[str, DesignValue],
+    config: StudyConfig,
+    parts: Mapping[str, Part],
+    masses: Mapping[str, Any],
 ) -> RobotDescription:
     bodies = {name: PartBody(masses[name], part.interfaces()) for name, part in parts.items()}
-    return assemble(study.base_robot, {part.name: part.placements for part in config.parts}, bodies)
+    changes = config.robot.changes if config.robot is not None else []
+    base = change_robot(study.base_robot, changes, numbers_of(config, design))
+    return assemble(base, {part.name: part.placements for part in config.parts}, bodies)
 
 
 def _part_key(study: StudyData, part: Part, settings: StressSettings) -> str:

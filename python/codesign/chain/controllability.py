@@ -66,7 +66,7 @@ def controllability(model: dyn.Model, settings: dyn.FlightSettings) -> Controlla
     most = np.array([jet.thrust_max for jet in settings.actuators])
     hover = lsq_linear(thrust_map / units[:, None], weight / units, bounds=(least, most)).x
     joint_map = _joint_map(model, settings, jets, hover)
-    low, high = _joint_room(settings)
+    low, high = _joint_room(model, settings)
     scaled = np.hstack([thrust_map * (most - least), joint_map * np.minimum(high - low, JOINT_AUTHORITY)])
     scaled /= units[:, None]
     rank, condition, unreached = _reach(scaled)
@@ -141,13 +141,15 @@ def _joint_map(
     return total
 
 
-def _joint_room(settings: dyn.FlightSettings) -> tuple[Array, Array]:
-    """How far each joint can turn down and up from the start posture [rad]."""
+def _joint_room(model: dyn.Model, settings: dyn.FlightSettings) -> tuple[Array, Array]:
+    """How far each joint can turn down and up from the start posture within the controller's ranges [rad]."""
     limits, start = settings.limits, settings.initial_joints
-    return (
-        np.minimum(limits.joint_range_scale * limits.joint_lower - start, 0.0),
-        np.maximum(limits.joint_range_scale * limits.joint_upper - start, 0.0),
-    )
+    if settings.controller == dyn.Controller.predictive:
+        ranges = [model.joint_limits[name] for name in settings.joints]
+        lower, upper = (np.array([limit[end] for limit in ranges]) for end in ("lower", "upper"))
+    else:
+        lower, upper = limits.joint_range_scale * limits.joint_lower, limits.joint_range_scale * limits.joint_upper
+    return np.minimum(lower - start, 0.0), np.maximum(upper - start, 0.0)
 
 
 def _reach(scaled: Array) -> tuple[int, float, Array]:

@@ -10,10 +10,21 @@ import msgspec
 import numpy as np
 
 from codesign import dynamics as dyn
+from codesign.chain.predictive import pulses, set_predictive, standardized_turbine, waypoint_path
 from codesign.errors import CodesignError, StudyError
 from codesign.names import nearest
 from codesign.study.config import StudyConfig
-from codesign.study.flight_config import DisturbancesConfig, FlightConfig, TrajectoryConfig
+from codesign.study.controller.checks import JET_MODELS, NEEDED
+from codesign.study.flight_config import (
+    CommandSpeedsConfig,
+    DisturbancesConfig,
+    FlightConfig,
+    GainsConfig,
+    LimitsConfig,
+    ReferencesConfig,
+    TrajectoryConfig,
+    WeightsConfig,
+)
 from codesign.transforms import pose
 from codesign.units import DEGREE
 
@@ -79,13 +90,22 @@ def flight_settings(
     """
     settings = dyn.FlightSettings()
     _set_rates(settings, flight)
-    settings.duration = flight.duration_s
+    settings.duration = flight_duration(flight, trajectory)
     settings.joints = joint_names(flight)
     settings.actuators = actuators(flight, jet_model or flight.jet_model)
     _set_initial_state(settings, flight)
     _set_plant(settings, flight)
-    _set_references(settings, flight)
-    _set_controller(settings, flight)
+    if flight.controller == "mpc":
+        if flight.mpc is None or flight.servo is None:
+            raise StudyError("controller 'mpc' needs the sections [flight.mpc] and [flight.servo]")
+        set_predictive(settings, flight, flight.mpc, flight.servo)
+    else:
+        _set_momentum_qp(settings, flight)
+    _set_groups(settings, flight)
+    settings.path = waypoint_path(trajectory)
+    settings.pulses = pulses(trajectory)
+    if flight.fuel is not None:
+        settings.fuel = dyn.FuelRate(idle=flight.fuel.idle_kg_s, per_newton=flight.fuel.kg_n_s)
     settings.trajectory = [
         dyn.CommandWindow(
             start=w.from_s, end=w.to_s, front=w.forward, left=w.left, up=w.up, roll=w.roll, pitch=w.pitch, yaw=w.yaw
@@ -105,6 +125,11 @@ def flight_settings(
         joint_speed=flight.failure.joint_speed_rad_s,
     )
     return settings
+
+
+def flight_duration(flight: FlightConfig, trajectory: TrajectoryConfig) -> float:
+    """Of a flight on a trajectory [s]."""
+    return trajectory.duration_s or flight.duration_s
 
 
 def _disturbances(disturbances: DisturbancesConfig) -> dyn.Disturbances:
@@ -223,14 +248,16 @@ def actuators(flight: FlightConfig, jet_model: str) -> list[dyn.Actuator]:
 
 def _thrust_dynamics(
     flight: FlightConfig, jet_model: str
-) -> list[dyn.RateIntegrator | dyn.FirstOrderLag | dyn.Turbine]:
+) -> list[dyn.RateIntegrator | dyn.FirstOrderLag | dyn.Turbine | dyn.StandardizedTurbine]:
     count = len(flight.jets.frames)
     if jet_model == "integrator":
         return [dyn.RateIntegrator()] * count
     if jet_model == "lag":
         return [dyn.FirstOrderLag(time=float(time)) for time in np.broadcast_to(flight.jets.lag_s, count)]
+    if jet_model in flight.jet_models:
+        return [standardized_turbine(flight.jet_models[jet_model])] * count
     if jet_model != "turbine":
-        raise StudyError(f"no jet model {jet_model!r}; there are integrator, lag, turbine")
+        raise StudyError(f"no jet model {jet_model!r}; {nearest(jet_model, [*JET_MODELS, *flight.jet_models])}")
     if flight.turbine is None:
         raise StudyError("jet model 'turbine' needs the section [flight.turbine]")
     coefficients = {key: getattr(flight.turbine, key) for key in TURBINE_COEFFICIENTS}
@@ -242,8 +269,16 @@ def _thrust_dynamics(
     return [turbine] * count
 
 
-def _set_references(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
-    speeds, references = flight.command_speeds, flight.references
+def _set_momentum_qp(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
+    sections = (flight.command_speeds, flight.references, flight.gains, flight.weights, flight.limits)
+    speeds, references, gains, weights, limits = sections
+    if speeds is None or references is None or gains is None or weights is None or limits is None:
+        raise StudyError(f"controller 'momentum_qp' needs the sections {', '.join(NEEDED['momentum_qp'])} of [flight]")
+    _set_references(settings, speeds, references)
+    _set_controller(settings, flight, gains, weights, limits)
+
+
+def _set_references(settings: dyn.FlightSettings, speeds: CommandSpeedsConfig, references: ReferencesConfig) -> None:
     settings.command_speeds = dyn.CommandSpeeds(
         front=speeds.forward_m_s,
         left=speeds.lateral_m_s,
@@ -264,8 +299,13 @@ def _set_references(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
     )
 
 
-def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
-    gains, weights, limits = flight.gains, flight.weights, flight.limits
+def _set_controller(
+    settings: dyn.FlightSettings,
+    flight: FlightConfig,
+    gains: GainsConfig,
+    weights: WeightsConfig,
+    limits: LimitsConfig,
+) -> None:
     settings.gains = dyn.Gains(
         momentum_proportional=gains.linear_proportional,
         momentum_derivative=gains.linear_derivative,
@@ -300,6 +340,9 @@ def _set_controller(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
     )
     jets = flight.jets.frames
     settings.symmetry_pairs = [(jets.index(a), jets.index(b)) for a, b in flight.jets.symmetric_pairs]
+
+
+def _set_groups(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
     settings.groups = [
         dyn.JointGroup(name=group.name, joints=group.joints, weight=group.velocity_weight)
         for group in flight.joint_groups

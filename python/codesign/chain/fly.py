@@ -41,7 +41,7 @@ def fly_robot(
     with refusals(study.path):
         logs = dyn.simulate_flights(model, settings, seeds)
     end = time.perf_counter()
-    document = flight_document(name, logs, config.flown, end - loaded, seeds)
+    document = flight_document(name, logs, config.flown, end - loaded, seeds, settings.duration)
     completed = document["completed"]
     families = objective_families(logs)
     return {

@@ -29,7 +29,7 @@ EXPLANATIONS = (
 
 
 def saturation(log: dyn.FlightLog, flight: FlightConfig) -> dict[str, float]:
-    """Shares from 0 to 1 of a flight; 0 for what the robot does not have.
+    """Shares from 0 to 1 of a flight; 0 for what robot or controller do not have.
 
     thrust_rate_share: mean commanded thrust rate over its limit. thrust_at_most, thrust_at_least, torque_at_limit,
     joint_at_limit: samples in which any of them is within 1 % of its range of that end; joints only where the study
@@ -42,17 +42,20 @@ def saturation(log: dyn.FlightLog, flight: FlightConfig) -> dict[str, float]:
         for value in (jets.min_thrust_n, jets.max_thrust_n, jets.max_thrust_rate_n_s)
     )
     scales = np.array([group.range_scale for group in flight.joint_groups for _ in group.joints])
-    ranges = np.array([r for group in flight.joint_groups for r in group.ranges_deg]).reshape(-1, 2) * DEGREE
-    if not len(ranges):
-        ranges = np.tile([-np.inf, np.inf], (len(scales), 1))
+    unlimited = [(-np.inf, np.inf)]
+    ranges = np.array(
+        [r for group in flight.joint_groups for r in group.ranges_deg or unlimited * len(group.joints)]
+    ).reshape(-1, 2)
+    ranges *= DEGREE
     low, high = ranges[:, 0] * scales, ranges[:, 1] * scales
-    near_thrust, near_joint = NEAR * (most - least), NEAR * (high - low)
+    near_thrust, near_joint = NEAR * (most - least), np.where(np.isfinite(high - low), NEAR * (high - low), 0.0)
+    torque = np.inf if limits is None else limits.torque_n_m
     with np.errstate(invalid="ignore"):  # the last sample of a lost flight may not be finite
         return {
             "thrust_rate_share": _mean(np.abs(log.thrust_rate_command) / rate),
             "thrust_at_most": _any(log.thrust >= most - near_thrust),
             "thrust_at_least": _any(log.thrust <= least + near_thrust),
-            "torque_at_limit": _any(np.abs(log.torque) >= (1.0 - NEAR) * limits.torque_n_m),
+            "torque_at_limit": _any(np.abs(log.torque) >= (1.0 - NEAR) * torque),
             "joint_at_limit": _any(
                 (log.joint_positions >= high - near_joint) | (log.joint_positions <= low + near_joint)
             ),

@@ -14,6 +14,7 @@ from codesign.chain import chain
 from codesign.chain.documents import flight_document, objective_families
 from codesign.chain.flight import find_trajectory, flight_settings, joint_names, refusals
 from codesign.chain.judge import loss
+from codesign.errors import StudyError
 from codesign.study.flight_config import GainsConfig
 from codesign.study.gains import AttitudeGains, LinearGains, attitude_gains, linear_gains
 
@@ -64,10 +65,13 @@ class Trial:
 def tune(study: StudyData, design: Design, trajectory: str | None = None) -> list[Trial]:
     """Flies the study's own gains, then proposed ones of several bandwidths; on its trajectory unless one is named.
 
-    Raises: StudyError: the study has no flight; GeometryError: the parts of the design cannot be built.
+    Raises: StudyError: the study has no flight, or its controller no gains; GeometryError: the parts of the design
+    cannot be built.
     """
     config = study.configured(design)
     flight = config.flown
+    if flight.gains is None:
+        raise StudyError(f"{study.path}: flight.controller {flight.controller!r} has no gains to tune")
     model = dyn.load_urdf(chain.build_robot(study, design).to_text(), joints=joint_names(flight))
     name = trajectory or flight.trajectory
     flown = find_trajectory(config, name)

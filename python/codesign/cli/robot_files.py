@@ -61,11 +61,12 @@ def write_robot_files(
     design = study.space.design(evaluation.design)
     config = study.configured(design)
     settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
+    momentum_qp = settings.controller == dyn.Controller.momentum_qp
     robot = build_robot(study, design)
     settings = dyn.fitted_settings(dyn.load_urdf(robot.to_text(), joints=settings.joints), settings)
     folder.mkdir(exist_ok=True)
     if any(kind in formats for kind in ROBOT):
-        robot = write_urdf(study, robot, components, folder, settings.limits)
+        robot = write_urdf(study, robot, components, folder, settings.limits if momentum_qp else None)
         _write_models(robot, settings, log, formats, folder)
     if any(kind in formats for kind in LOG):
         words = {key: value_text(value) for key, value in design.items()}

@@ -128,6 +128,43 @@ _TABLE = (
     Quantity("max_torque", "Largest joint torque", "N·m", "During the flight.", path="flight.max_torque"),
     Quantity("max_thrust", "Largest thrust of a jet", "N", "During the flight.", path="flight.max_thrust"),
     Quantity("min_thrust", "Smallest thrust of a jet", "N", "During the flight.", path="flight.min_thrust"),
+    Quantity(
+        "tracking",
+        "Position error",
+        "m",
+        "Root mean square over the flight of the center of mass's distance from its reference.",
+        path="flight.tracking",
+    ),
+    Quantity(
+        "tracking_pose",
+        "Pose error",
+        "m",
+        "Root mean square over the flight of position and attitude error, a radian counted as a meter.",
+        path="flight.tracking_pose",
+    ),
+    Quantity(
+        "mechanical_energy",
+        "Joint energy",
+        "J",
+        "Sum over the joints of the integral of |torque · velocity|: how much the joints are shaken, not what flying "
+        "consumes; the jets' fuel is a million times more.",
+        path="flight.mechanical_energy",
+    ),
+    Quantity("fuel", "Fuel", "kg", "Burnt by all jets during the flight.", path="flight.fuel"),
+    Quantity(
+        "thrust_impulse",
+        "Thrust impulse",
+        "N·s",
+        "Integral of the total thrust; of flights of equal length, fuel in other units.",
+        path="flight.thrust_impulse",
+    ),
+    Quantity(
+        "hover_margin",
+        "Thrust left in hover",
+        "",
+        "1 less the largest share of its limit that a jet needs to hover at the start.",
+        path="flight.hover_margin",
+    ),
 )
 QUANTITIES = {quantity.key: quantity for quantity in _TABLE}
 FAMILY = ("momentum", "joint_velocity", "thrust")  # members of each objective family

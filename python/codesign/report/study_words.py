@@ -100,9 +100,10 @@ def flight_words(config: StudyConfig) -> str:
     if flight is None:
         return "No flight: the parts alone are judged."
     trajectory = config.trajectories[flight.trajectory]
+    seconds = trajectory.duration_s or flight.duration_s
     calm = "calm" if trajectory.disturbances == type(trajectory.disturbances)() else "disturbed"
     return (
-        f"One {calm} flight of {flight.duration_s:g}\u202fs with {plural(len(flight.jets.frames), 'jet')}, simulated "
+        f"One {calm} flight of {seconds:g}\u202fs with {plural(len(flight.jets.frames), 'jet')}, simulated "
         f"in steps of {1e3 * flight.step_s:g}\u202fms. The step enters the numbers, so they compare designs with each "
         "other rather than predict the robot's."
     )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import io
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -198,6 +198,12 @@ class RobotDescription:
         T = require_pose(parent_T_child, f"origin of joint {joint}")
         element = self._copied("joint", joint)
         _replace(element, "origin", _origin_element(T))
+        return self._with(element)
+
+    def edited(self, tag: str, name: str, edit: Callable[[ET.Element], None]) -> RobotDescription:
+        """The robot with what `edit` does to a copy of the link's or joint's (tag) element."""
+        element = self._copied(tag, name)
+        edit(element)
         return self._with(element)
 
     def set_mesh(

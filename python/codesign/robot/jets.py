@@ -12,7 +12,19 @@ from codesign.robot.description import RobotDescription
 from codesign.transforms import quaternion
 
 UNITS = "SI: m, kg, s, N, rad; velocities of the base in world axes; quaternions w, x, y, z"
-COMMANDS = {"integrator": "thrust rate [N/s]", "lag": "thrust [N]", "turbine": "throttle [%]"}
+KINDS = {
+    dyn.RateIntegrator: "integrator",
+    dyn.FirstOrderLag: "lag",
+    dyn.Turbine: "turbine",
+    dyn.StandardizedTurbine: "standardized turbine",
+}
+COMMAND_UNITS = {"integrator": "N/s", "lag": "N", "turbine": "%", "standardized turbine": "%"}
+COMMANDS = {
+    "integrator": "thrust rate [N/s]",
+    "lag": "thrust [N]",
+    "turbine": "throttle [%]",
+    "standardized turbine": "throttle [%]",
+}
 
 
 def flying_document(robot: RobotDescription, settings: dyn.FlightSettings) -> dict[str, Any]:
@@ -47,20 +59,34 @@ def flying_document(robot: RobotDescription, settings: dyn.FlightSettings) -> di
                 for jet, thrust in zip(settings.actuators, settings.initial_thrusts.tolist(), strict=True)
             },
         },
-        "controller": {
-            "step": settings.step,
-            "gains": _values(settings.gains),
-            "weights": _values(settings.weights),
-            "limits": _values(settings.limits),
-        },
+        "controller": {"kind": settings.controller.name, "step": settings.step} | _controller(settings),
         "plant": {"integrator": settings.integrator.name, "substeps": settings.substeps},
     }
 
 
 def dynamics_kind(jet: dyn.Actuator) -> str:
-    """integrator, lag or turbine, as a study calls it."""
-    kinds = {dyn.RateIntegrator: "integrator", dyn.FirstOrderLag: "lag", dyn.Turbine: "turbine"}
-    return kinds[type(jet.dynamics)]
+    """integrator, lag or turbine, as a study calls it, or standardized turbine."""
+    return KINDS[type(jet.dynamics)]
+
+
+def torque_limit(settings: dyn.FlightSettings, otherwise: float | None) -> float | None:
+    """What the flight's controller allows a joint [N m]; servos of a predictive flight have no limit of their own."""
+    return settings.limits.torque if settings.controller == dyn.Controller.momentum_qp else otherwise
+
+
+def _controller(settings: dyn.FlightSettings) -> dict[str, Any]:
+    if settings.controller == dyn.Controller.momentum_qp:
+        return {name: _values(getattr(settings, name)) for name in ("gains", "weights", "limits")}
+    predictive = settings.predictive
+    plain = ("body", "joints", "throttle_every", "small_steps", "large_steps", "large_step", "control_steps")
+    return {
+        **{name: getattr(predictive, name) for name in plain},
+        "joint_speed": predictive.joint_speed if np.isfinite(predictive.joint_speed) else None,
+        "integral": predictive.integral.name,
+        "model": _values(predictive.model),
+        "weights": _values(predictive.weights),
+        "servos": _values(settings.servo_plant.servo),
+    }
 
 
 def _jet(jet: dyn.Actuator) -> dict[str, Any]:

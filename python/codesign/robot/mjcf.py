@@ -17,6 +17,7 @@ from codesign.errors import UrdfError
 from codesign.robot.bodies import child_joints, depth_first, has_mass, rigid_bodies
 from codesign.robot.collisions import Pairs
 from codesign.robot.description import RobotDescription
+from codesign.robot.jets import torque_limit
 from codesign.robot.urdf_xml import MOVING, number_text
 from codesign.transforms import Matrix, quaternion
 
@@ -196,7 +197,8 @@ def _moving(robot: RobotDescription) -> list[str]:
 def _torque_range(robot: RobotDescription, settings: dyn.FlightSettings, name: str) -> str:
     """Of a flown joint what the flight allows, of another what the URDF says; "" if neither does."""
     limit = robot.joint(name).limit
-    torque = settings.limits.torque if name in settings.joints else getattr(limit, "effort", None)
+    torque = getattr(limit, "effort", None)
+    torque = torque_limit(settings, torque) if name in settings.joints else torque
     return number_text([-torque, torque]) if torque else ""
 
 

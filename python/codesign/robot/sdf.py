@@ -17,6 +17,7 @@ from codesign.robot.bodies import depth_first, has_mass, rigid_bodies
 from codesign.robot.collisions import Pairs
 from codesign.robot.description import RobotDescription
 from codesign.robot.drake_filters import collision_filters
+from codesign.robot.jets import torque_limit
 from codesign.robot.urdf_xml import MOVING, number_text
 from codesign.transforms import Matrix, inverse, rpy_from_rotation
 
@@ -146,7 +147,7 @@ class _Writer:
         for key in LIMITS:
             value = getattr(joint.limit, key, None)
             if key == "effort" and name in self.settings.joints:
-                value = self.settings.limits.torque
+                value = torque_limit(self.settings, value)
             if value is not None and not (joint.type == "continuous" and key in ("lower", "upper")):
                 ET.SubElement(limit, key).text = number_text(value)
         if name in self.robot.mimics:

@@ -16,10 +16,9 @@ import numpy as np
 from codesign import dynamics as dyn
 from codesign.errors import LibraryError
 from codesign.files import replacing, write_text
-from codesign.robot.jets import dynamics_kind
+from codesign.robot.jets import COMMAND_UNITS, dynamics_kind
 from codesign.transforms import Matrix, quaternion
 
-COMMAND_UNITS = {"integrator": "N/s", "lag": "N", "turbine": "%"}
 NAMES_OF_UNITS = {"m/s": "m_s", "rad/s": "rad_s", "N/s": "n_s", "N m": "n_m", "N": "n", "%": "percent", "": ""}
 WORLD, BASE = "world axes", "base axes"
 

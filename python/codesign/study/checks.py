@@ -49,7 +49,13 @@ def unknown(key: str, kind: str, name: str, known: Iterable[str]) -> Iterator[Pr
 def _variable_problems(config: StudyConfig) -> Iterator[Problem]:
     if not config.variables:
         yield "variables", "a study needs at least one design variable"
-    used = {name for part in config.parts for name in part.parameters.values()}
+    changes = config.robot.changes if config.robot is not None else []
+    used = {name for part in config.parts for name in part.parameters.values()} | {c.variable for c in changes}
+    for index, change in enumerate(changes):
+        key = f"robot.changes[{index}].variable"
+        yield from unknown(key, "design variable", change.variable, config.variables)
+        if change.variable in config.variables and config.variables[change.variable].unit != "mm":
+            yield key, f"{change.variable!r} must have the unit mm"
     for name, variable in config.variables.items():
         key = f"variables.{name}"
         if not name or "=" in name or "." in name or name != name.strip():
@@ -110,7 +116,7 @@ def _part_problems(part: PartConfig, config: StudyConfig, part_class: type[Part]
     for parameter in part.parameters:
         yield from unknown(f"{key}.parameters", f"parameter of {part.shape}", parameter, units)
     for parameter in units:
-        if parameter not in part.parameters:
+        if parameter not in part.parameters and parameter not in part.options:
             yield f"{key}.parameters", f"{part.shape} takes {parameter!r} too, which is not given"
     offered = _offered_numbers(config)
     for parameter, name in part.parameters.items():

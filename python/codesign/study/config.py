@@ -8,6 +8,7 @@ from msgspec import Meta, field
 
 from codesign.errors import StudyError
 from codesign.robot.assembly import PartPlacement
+from codesign.robot.changes import RobotChange
 from codesign.robot.clearance import InterferenceSettings
 from codesign.study.flight_config import FlightConfig, TrajectoryConfig
 from codesign.study.sections import ChoiceName, Name, NonNegative, Positive, Probability, Section, Seed, Vector3
@@ -150,9 +151,9 @@ class PartConfig(Section, frozen=True, kw_only=True):
     shape: `module:Class`; the module is a file beside study.toml or any importable module.
     parameters: the part's parameter -> design variable. supports: faces that are clamped, or `FACE: xz`, held in
     these directions only (a bolt's hole across, the face under its head along). options: further keyword arguments of
-    the class. loads: of the only load case; or cases: any number of them, by name. material: a name of
-    [materials], else one that `codesign materials` lists. density_kg_m3: of the part's mass, where it is not that of
-    the material; reports say so.
+    the class, or parameters that are fixed. loads: of the only load case; or cases: any number of them, by name.
+    material: a name of [materials], else one that `codesign materials` lists. density_kg_m3: of the part's mass,
+    where it is not that of the material; reports say so.
     """
 
     name: Name
@@ -182,10 +183,12 @@ class RobotConfig(Section, frozen=True, kw_only=True):
     """The robot that the parts are built into; path relative to study.toml.
 
     visuals: package:// path of a URDF with the same links, whose meshes pictures show where its package is installed.
+    changes: what design variables change on it before the parts are placed.
     """
 
     urdf: Name
     visuals: str = ""
+    changes: list[RobotChange] = []
 
 
 class FemConfig(Section, frozen=True, kw_only=True):

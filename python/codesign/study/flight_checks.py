@@ -13,6 +13,7 @@ from codesign.robot.clearance import InterferenceSettings, link_pieces
 from codesign.robot.description import RobotDescription
 from codesign.study.checks import Problem, repeated, unknown
 from codesign.study.config import StudyConfig
+from codesign.study.controller.checks import controller_names, controller_problems
 from codesign.study.flight_config import FlightConfig
 
 MOST_SAMPLES = 1_000_000  # of a flight
@@ -32,14 +33,14 @@ def flight_problems(config: StudyConfig) -> Iterator[Problem]:
     yield from _time_problems(flight)
     yield from _joint_problems(flight)
     yield from _jet_problems(flight)
-    for key, limits in (("roll", flight.references.roll_range_deg), ("pitch", flight.references.pitch_range_deg)):
-        if limits[0] > limits[1]:
-            yield f"flight.references.{key}_range_deg", f"{limits[0]:g} is above {limits[1]:g}"
+    if flight.references is not None:
+        for key, limits in (("roll", flight.references.roll_range_deg), ("pitch", flight.references.pitch_range_deg)):
+            if limits[0] > limits[1]:
+                yield f"flight.references.{key}_range_deg", f"{limits[0]:g} is above {limits[1]:g}"
     if bool(flight.ground.frames) != bool(flight.ground.points_m):
         yield "flight.ground", "frames and points_m belong together: the points stand in each of the frames"
     yield from _air_and_start_problems(config, flight)
-    if flight.jet_model == "turbine" and flight.turbine is None:
-        yield "flight.jet_model", "'turbine' needs [flight.turbine]"
+    yield from controller_problems(config, flight)
     yield from _trajectory_problems(config)
 
 
@@ -121,6 +122,8 @@ def _joint_problems(flight: FlightConfig) -> Iterator[Problem]:
         key = f"flight.joint_groups[{group.name}]"
         if not group.joints:
             yield f"{key}.joints", "empty: leave out a group without joints"
+        if flight.controller == "momentum_qp" and group.posture_gain_hz is None:
+            yield f"{key}.posture_gain_hz", "the controller 'momentum_qp' needs it"
         for name in ("initial_rad", *OPTIONAL_OF_GROUPS, *PER_JOINT):
             value = getattr(group, name)
             if not isinstance(value, list) or (not value and name in OPTIONAL_OF_GROUPS):
@@ -180,6 +183,11 @@ def _trajectory_problems(config: StudyConfig) -> Iterator[Problem]:
 
 def robot_problems(config: StudyConfig, robot: RobotDescription) -> Iterator[Problem]:
     """Names of joints, frames and links that the robot does not have."""
+    for index, change in enumerate(config.robot.changes if config.robot is not None else []):
+        if change.joint is not None:
+            yield from unknown(f"robot.changes[{index}].joint", "joint", change.joint, robot.joint_names)
+        if change.link is not None:
+            yield from unknown(f"robot.changes[{index}].link", "link", change.link, robot.link_names)
     flight = config.flight
     if flight is None:
         return
@@ -187,6 +195,7 @@ def robot_problems(config: StudyConfig, robot: RobotDescription) -> Iterator[Pro
         for joint in group.joints:
             key = f"flight.joint_groups[{group.name}].joints"
             yield from unknown(key, "moving joint", joint, robot.moving_joint_names)
+    yield from controller_names(flight, robot)
     for jet in flight.jets.frames:
         yield from unknown("flight.jets.frames", "link", jet, robot.link_names)
     frames = {"flight.ground.frames": flight.ground.frames}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from codesign.study.controller.config import FuelConfig, MpcConfig, ServoConfig, StandardizedJetConfig
 from codesign.study.sections import Deviation, Name, NonNegative, Positive, Range, Section, Seed, Sign, Vector3
 
 
@@ -37,7 +38,7 @@ class JointGroupConfig(Section, frozen=True, kw_only=True):
     reference_rad: list[float] = []
     ranges_deg: list[Range] = []
     range_scale: Positive = 1.0
-    posture_gain_hz: NonNegative
+    posture_gain_hz: NonNegative | None = None
     velocity_weight: NonNegative = 0.0
     rotor_inertia_kg_m2: NonNegative | list[NonNegative] = 0.0
     viscous_friction_n_m_per_rad_s: NonNegative | list[NonNegative] = 0.0
@@ -182,7 +183,12 @@ class TurbineConfig(Section, frozen=True, kw_only=True):
 
 
 class FlightConfig(Section, frozen=True, kw_only=True):
-    """Plant, jets, controller and reference generator."""
+    """Plant, jets, controller and reference generator.
+
+    controller: "momentum_qp" needs command_speeds, references, gains, weights and limits, and of every joint its range
+    and posture gain; "mpc" needs mpc and servo, and a jet model of jet_models. jet_model: "integrator", "lag",
+    "turbine", or a name of jet_models.
+    """
 
     trajectory: str
     step_s: Positive
@@ -191,15 +197,20 @@ class FlightConfig(Section, frozen=True, kw_only=True):
     integrator: Literal["euler", "semi_implicit_euler", "runge_kutta_4"] = "euler"
     duration_s: Positive
     seeds: list[Seed] = []
-    jet_model: Literal["integrator", "lag", "turbine"] = "integrator"
+    controller: Literal["momentum_qp", "mpc"] = "momentum_qp"
+    jet_model: Name = "integrator"
+    jet_models: dict[Name, StandardizedJetConfig] = {}
+    mpc: MpcConfig | None = None
+    servo: ServoConfig | None = None
+    fuel: FuelConfig | None = None
     initial_state: InitialStateConfig
     joint_groups: list[JointGroupConfig] = []
     jets: JetsConfig
-    command_speeds: CommandSpeedsConfig
-    references: ReferencesConfig
-    gains: GainsConfig
-    weights: WeightsConfig
-    limits: LimitsConfig
+    command_speeds: CommandSpeedsConfig | None = None
+    references: ReferencesConfig | None = None
+    gains: GainsConfig | None = None
+    weights: WeightsConfig | None = None
+    limits: LimitsConfig | None = None
     drives: DrivesConfig = DrivesConfig()
     drag: DragConfig | None = None
     tank: TankConfig | None = None
@@ -234,9 +245,37 @@ class DisturbancesConfig(Section, frozen=True, kw_only=True):
     seed: Seed = 0
 
 
-class TrajectoryConfig(Section, frozen=True, kw_only=True):
-    """Piloted segments, hover outside of them; calm unless disturbed."""
+class WaypointConfig(Section, frozen=True, kw_only=True):
+    """A point of a path, relative to its start, world axes; duration_s: to get there; rest_s: there."""
 
-    windows: list[WindowConfig]
+    m: Vector3
+    yaw_deg: float = 0.0
+    duration_s: Positive
+    rest_s: NonNegative = 0.0
+
+
+class PulseConfig(Section, frozen=True, kw_only=True):
+    """A force on the base through the center of mass and a moment on the base, world axes, for a time."""
+
+    at_s: NonNegative
+    for_s: Positive
+    force_n: Vector3 = (0.0, 0.0, 0.0)
+    moment_n_m: Vector3 = (0.0, 0.0, 0.0)
+
+
+class TrajectoryConfig(Section, frozen=True, kw_only=True):
+    """Piloted segments, or way-points; hover outside of them; calm unless disturbed.
+
+    kind: "stop", at rest in every way-point on minimum-jerk legs; "through", least squared jerk through all of them, at
+    rest at both ends and where rest_s says so. rest_s: before the first leg. duration_s: of the flight; default: that
+    of [flight].
+    """
+
+    windows: list[WindowConfig] = []
+    waypoints: list[WaypointConfig] = []
+    kind: Literal["stop", "through"] = "stop"
+    rest_s: NonNegative = 0.0
+    duration_s: Positive | None = None
+    pulses: list[PulseConfig] = []
     label: str = ""
     disturbances: DisturbancesConfig = DisturbancesConfig()

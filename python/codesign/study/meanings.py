@@ -1,6 +1,8 @@
 """What keys of a study file mean where the text of their class does not say: class -> key -> words."""
 
-MEANINGS: dict[str, dict[str, str]] = {
+from codesign.study.controller.meanings import CONTROLLER_MEANINGS
+
+_MEANINGS: dict[str, dict[str, str]] = {
     "StudyConfig": {
         "name": "of folders and files",
         "extends": "a shipped study, or the path of one relative to this file: this file states only what differs",
@@ -80,6 +82,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "integrator": "of the simulation; `runge_kutta_4` is of fourth order, the others of first",
         "seeds": "of the trajectory's disturbances: a flight for each, objectives are means, constraints hold for all",
         "duration_s": "of a flight",
+        "controller": "what flies the robot",
         "jet_model": "how thrust follows its command",
         "initial_state": "at the start",
         "joint_groups": "actuated joints in the order of all joint vectors",
@@ -259,3 +262,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "lazy": "strength and clearances only of designs that can enter the front; `surrogate`: true, others: false",
     },
 }  # fmt: skip
+MEANINGS = {
+    name: _MEANINGS.get(name, {}) | CONTROLLER_MEANINGS.get(name, {})
+    for name in _MEANINGS.keys() | CONTROLLER_MEANINGS.keys()
+}

@@ -1,0 +1,1 @@
+"""Weights of a predictive controller alone, on the body of the Original."""

@@ -1,0 +1,1 @@
+"""Body and predictive controller of a flying humanoid, together."""

@@ -1,0 +1,1 @@
+"""Sections of a study that decide how predictive control flies: configuration, checks, meanings."""
