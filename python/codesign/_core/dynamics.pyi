@@ -15,6 +15,7 @@ __all__: list[str] = [
     "CommandSpeeds",
     "CommandWindow",
     "ContactPoint",
+    "Controller",
     "Delays",
     "Disturbances",
     "DragArea",
@@ -27,6 +28,7 @@ __all__: list[str] = [
     "FlightSettings",
     "FlightStatus",
     "Friction",
+    "FuelRate",
     "Gains",
     "Integrator",
     "JetPrediction",
@@ -48,6 +50,10 @@ __all__: list[str] = [
     "QpStatus",
     "RateIntegrator",
     "ReferenceSettings",
+    "ServoIntegrator",
+    "ServoPlantSettings",
+    "ServoSettings",
+    "StandardizedTurbine",
     "Tank",
     "Trim",
     "TrimSettings",
@@ -1741,44 +1747,13 @@ class Tank:
     @position.setter
     def position(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
 
-class TrimSettings:
-    """
-    Which hover a flight starts in.
-    """
-    def __copy__(self) -> TrimSettings: ...
-    def __deepcopy__(self, arg0: dict) -> TrimSettings: ...
-    def __getstate__(self) -> dict: ...
-    def __init__(self, **kwargs) -> None: ...
-    def __repr__(self) -> str: ...
-    def __setstate__(self, arg0: dict) -> None: ...
-    @property
-    def joints(self) -> list[str]:
-        """
-        names of those that may move
-        """
-    @joints.setter
-    def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
-    @property
-    def thrust_weight(self) -> float:
-        """
-        [1/N]
-        """
-    @thrust_weight.setter
-    def thrust_weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def tilt_weight(self) -> float:
-        """
-        [1/rad]
-        """
-    @tilt_weight.setter
-    def tilt_weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-
 class FlightSettings:
     """
     Everything that decides a flight besides the robot; SI units. Vectors over joints have the order of `joints`, vectors over jets that of `actuators`. Assign lists and arrays whole.
     """
 
     command_speeds: CommandSpeeds
+    controller: Controller
     delays: Delays
     disturbances: Disturbances
     failure: FailureLimits
@@ -1789,7 +1764,6 @@ class FlightSettings:
     predictive: PredictiveSettings
     reference: ReferenceSettings
     servo_plant: ServoPlantSettings
-    trim: TrimSettings
     weights: Weights
     def __copy__(self) -> FlightSettings: ...
     def __deepcopy__(self, arg0: dict) -> FlightSettings: ...
@@ -1890,12 +1864,26 @@ class FlightSettings:
     @joints.setter
     def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
     @property
+    def path(self) -> WaypointPath:
+        """
+        replaces the commands if it has way-points
+        """
+    @path.setter
+    def path(self, arg0: WaypointPath) -> None: ...
+    @property
     def posture_reference(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         (joints,) [rad]; empty: the angles at the start
         """
     @posture_reference.setter
     def posture_reference(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
+    @property
+    def pulses(self) -> list[Pulse]:
+        """
+        list of Pulse
+        """
+    @pulses.setter
+    def pulses(self, arg0: collections.abc.Sequence[Pulse]) -> None: ...
     @property
     def rotation_deadband(self) -> float:
         """
@@ -1915,13 +1903,6 @@ class FlightSettings:
         """
         number of samples of the flight
         """
-    @property
-    def start_in_trim(self) -> bool:
-        """
-        start in the hover nearest to the initial state
-        """
-    @start_in_trim.setter
-    def start_in_trim(self, arg0: bool) -> None: ...
     @property
     def step(self) -> float:
         """
