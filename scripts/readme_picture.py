@@ -1,0 +1,97 @@
+"""docs/figures/hexarotor.png, the picture at the head of the README: designs, their part, and a flight.
+
+python scripts/readme_picture.py
+"""
+
+from itertools import product
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from codesign import dynamics as dyn
+from codesign.chain.flight import find_trajectory, flight_settings
+from codesign.chain.study import Study, load_study
+from codesign.problem.pareto import non_dominated
+
+OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "hexarotor.png"
+LENGTHS, TILTS, TUBES = (160, 200, 240, 280), (10, 15, 20, 25, 30, 35, 40), ("10x2", "16x2", "20x2")
+TUBE_COLORS = dict(zip(TUBES, ("#1f77b4", "#ff7f0e", "#2ca02c"), strict=True))
+
+
+def flown(study: Study, design: dict[str, float | str]) -> dyn.FlightLog:
+    """The flight of a design."""
+    config = study.configured(study.space.design(design))
+    settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
+    return dyn.simulate_flight(dyn.load_urdf(study.build_robot(design), joints=[]), settings)
+
+
+def draw_front(axes: plt.Axes, study: Study) -> None:
+    """Momentum error over thrust of a coarse grid; the best compromises filled."""
+    designs = [{"length": a, "tilt": b, "tube": c} for a, b, c in product(LENGTHS, TILTS, TUBES)]
+    logs = [flown(study, design) for design in designs]
+    points = np.array([[log.rms.thrust, log.rms.momentum] for log in logs])
+    best = np.asarray(non_dominated(points))
+    for tube, color in TUBE_COLORS.items():
+        mine = np.array([design["tube"] == tube for design in designs])
+        axes.scatter(*points[mine & ~best].T, s=14, facecolors="none", edgecolors=color)
+        axes.scatter(*points[mine & best].T, s=26, color=color, label=f"tube {tube}")
+    axes.set(xlabel="mean thrust [N]", ylabel="momentum error", title="designs, the best ones filled")
+    axes.legend(frameon=False)
+
+
+def draw_part(axes: plt.Axes, study: Study) -> None:
+    """The arm of the baseline."""
+    part = study.build_parts(study.baseline)["arm"]
+    surface = part.surface()
+    corners = 1e3 * surface.points[surface.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    shade = 0.55 + 0.45 * np.clip(normals @ (np.array([-0.4, -0.5, 0.8]) / 1.025), 0.0, 1.0)
+    seat = np.asarray(surface.face) == list(surface.face_names).index("seat")
+    colors = shade[:, None] * np.where(seat[:, None], (0.95, 0.45, 0.2), (0.45, 0.62, 0.85))
+    axes.add_collection3d(Poly3DCollection(corners, facecolors=colors))
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), title="its parametric arm")
+    axes.set_box_aspect(high - low, zoom=1.5)
+    axes.view_init(22, -62)
+    axes.set_axis_off()
+
+
+def draw_flight(axes: plt.Axes, study: Study) -> None:
+    """The path of a flight, and the rotors with their thrusts at some instants."""
+    log = flown(study, dict(study.baseline))
+    axes.plot(*log.com.T, color="0.6", lw=1)
+    robot = dyn.load_urdf(study.build_robot(study.baseline), joints=[])
+    frames = study.config.flown.jets.frames
+    for k in np.linspace(0, log.samples - 1, 7).astype(int):
+        base = np.eye(4)
+        base[:3, :3], base[:3, 3] = log.base_rotation[k], log.base_position[k]
+        for jet, frame in enumerate(frames):
+            pose = dyn.frame_pose(robot, base, [], frame)
+            tip = pose[:3, 3] + 0.06 * log.thrust[k, jet] * pose[:3, 2]
+            axes.plot(*np.array([base[:3, 3], pose[:3, 3]]).T, color="#1f4e79", lw=1.4)
+            axes.plot(*np.array([pose[:3, 3], tip]).T, color="#d95f02", lw=1.1)
+    axes.set(title="its flight, with thrusts")
+    axes.set_aspect("equal")
+    axes.view_init(24, -60)
+    axes.tick_params(labelsize=6)
+
+
+def main() -> None:
+    """Draws and writes the picture."""
+    study = load_study("hexarotor")
+    figure = plt.figure(figsize=(12.0, 3.9), dpi=110, layout="constrained")
+    draw_front(figure.add_subplot(1, 3, 1), study)
+    draw_part(figure.add_subplot(1, 3, 2, projection="3d"), study)
+    draw_flight(figure.add_subplot(1, 3, 3, projection="3d"), study)
+    figure.savefig(OUT)
+    print(OUT)
+
+
+if __name__ == "__main__":
+    main()
