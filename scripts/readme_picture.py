@@ -57,7 +57,7 @@ def draw_part(axes: plt.Axes, study: Study) -> None:
     axes.add_collection3d(Poly3DCollection(corners, facecolors=colors))
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), title="its parametric arm")
-    axes.set_box_aspect(high - low, zoom=1.5)
+    axes.set_box_aspect(high - low, zoom=0.85)
     axes.view_init(22, -62)
     axes.set_axis_off()
 

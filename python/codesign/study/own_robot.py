@@ -19,10 +19,10 @@ from codesign.errors import StudyError, UrdfError
 from codesign.files import write_text
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
+from codesign.robot.mounts import Mount, arms_around, arms_on, arms_to, is_held, mended, propellers, start_posture
 from codesign.studies.hexarotor.arm import Arm
 from codesign.study.gains import attitude_gains, linear_gains
 from codesign.study.imports import PACKAGE
-from codesign.study.mounts import Mount, arms_around, arms_on, arms_to, is_held, mended, propellers, start_posture
 from codesign.study.reference import SCHEMA_FILE, study_schema
 from codesign.transforms import rpy_from_rotation
 

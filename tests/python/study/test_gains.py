@@ -1,5 +1,6 @@
 """Gains from bandwidths: the poles that were asked for, and those that a flight shows."""
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -43,7 +44,9 @@ def hexarotor():
 def flown(study, position, attitude, imbalance):
     """A hover of the shipped hexarotor whose propellers follow at once, started with wrong thrusts."""
     config = study.config
-    settings = flight_settings(config.flight, find_trajectory(config, "box"), "integrator")
+    start = msgspec.structs.replace(config.flight.initial_state, trim=None)
+    untrimmed = msgspec.structs.replace(config.flight, initial_state=start)
+    settings = flight_settings(untrimmed, find_trajectory(config, "box"), "integrator")
     settings.trajectory = []
     settings.step, settings.duration = STEP, 3.0
     settings.gains = dyn.Gains(

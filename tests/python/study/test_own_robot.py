@@ -6,7 +6,7 @@ from codesign.chain.fly import fly_robot
 from codesign.chain.study import load_study
 from codesign.errors import StudyError, UrdfError
 from codesign.robot.description import RobotDescription
-from codesign.study.mounts import mended, propellers, start_posture
+from codesign.robot.mounts import mended, propellers, start_posture
 from codesign.study.own_robot import study_of_robot
 from robots import ERD, Robot
 
