@@ -22,6 +22,7 @@
 
 #include "errors.hpp"
 #include "fem/mesh/tet_neighbors.hpp"
+#include "fem/meshing/ball_size.hpp"
 #include "fem/meshing/feature_curve.hpp"
 #include "fem/meshing/mesh_watch.hpp"
 #include "fem/surface/solid_oracle.hpp"
@@ -232,6 +233,23 @@ struct SizingField {
   }
 };
 
+// The edge length on feature lines.
+struct LineSizingField {
+  using FT = Kernel::FT;
+  using Point_3 = Point;
+  using Index = SolidDomain::Index;
+
+  SizingField size;
+  BallSize balls;
+  bool clear_of_patches;
+
+  FT operator()(const Point& p, int dimension, const Index& index) const {
+    const double wanted = size(p, dimension, index);
+    if (!clear_of_patches || dimension != 1) return wanted;
+    return balls.at(to_vector(p), index - 1, wanted);
+  }
+};
+
 // A few triangles of a shell, far from each other.
 std::vector<int> spread_triangles(const SurfaceMesh& surface, const std::vector<int>& shell,
                                   int which) {
@@ -350,6 +368,7 @@ LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
   const auto& [surface, simplified, topology, patches, lines, oracle] = prepared;
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh in every run
   const SizingField length{&size, &watch, 1.0};
+  const LineSizingField line_length{length, BallSize(prepared), attempt.clear_balls};
   const SizingField distance{&size, &watch, options.facet_distance};
   CGAL::Mesh_error_code error = CGAL::CGAL_MESH_3_NO_ERROR;
   namespace set = CGAL::parameters;
@@ -357,7 +376,7 @@ LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
   try {
     const SolidDomain domain(surface, patches, lines, oracle, watch);
     const Criteria criteria(
-        set::edge_size = length, set::facet_size = length,
+        set::edge_size = line_length, set::facet_size = length,
         set::facet_angle = options.facet_angle / kDegree, set::facet_distance = distance,
         set::facet_topology = attempt.separate_patches ? CGAL::FACET_VERTICES_ON_SAME_SURFACE_PATCH
                                                        : CGAL::FACET_VERTICES_ON_SURFACE,

@@ -13,6 +13,7 @@ namespace codesign::fem {
 struct Attempt {
   bool separate_patches =
       false;                 // refine sides with corners inside two patches, across thin wedges
+  bool clear_balls = false;  // keep protecting balls out of patches that their line does not border
   bool seed_shells = false;  // start with points on every shell, not only on those without lines
 };
 

@@ -50,7 +50,8 @@ void add_edges_off_patches(const TetMesh& mesh, const Triangles& triangles,
       const double off = std::max((oracle.nearest(middle, p).point - middle).norm(),
                                   (oracle.nearest(middle, q).point - middle).norm());
       if (off > kOffPatch * (b - a).norm())
-        found.push_back({middle, (oracle.nearest(middle, -1).point - middle).norm()});
+        found.push_back(
+            {middle, (oracle.nearest(middle, -1).point - middle).norm(), (b - a).norm()});
     }
 }
 
@@ -83,8 +84,10 @@ void add_non_manifold(const SurfaceMesh& boundary, std::vector<Mismatch>& found)
       const auto [value, fresh] = shortest.try_emplace(at->first, shortest_edge(boundary, t));
       if (!fresh) value->second = std::min(value->second, shortest_edge(boundary, t));
     }
-  for (const auto& [point, size] : size_at)
-    found.push_back({boundary.points.row(point).transpose(), size >= 0.0 ? size : shortest[point]});
+  for (const auto& [point, size] : size_at) {
+    const double length = size >= 0.0 ? size : shortest[point];
+    found.push_back({boundary.points.row(point).transpose(), length, length});
+  }
 }
 
 void add_sides_across(const SurfaceMesh& boundary, const SurfaceMesh& surface,
@@ -94,7 +97,7 @@ void add_sides_across(const SurfaceMesh& boundary, const SurfaceMesh& surface,
         (corner(boundary, t, 0) + corner(boundary, t, 1) + corner(boundary, t, 2)) / 3.0;
     const SolidOracle::Hit nearest = oracle.nearest(center, -1);
     if (triangle_normal(boundary, t).dot(triangle_normal(surface, nearest.triangle)) < kAcross)
-      found.push_back({center, (nearest.point - center).norm()});
+      found.push_back({center, (nearest.point - center).norm(), shortest_edge(boundary, t)});
   }
 }
 
@@ -126,6 +129,20 @@ SurfaceDistance surface_distance(const TetMesh& mesh, const SurfaceMesh& surface
   return farthest;
 }
 
+// Of the wall or gap at a place that the boundary misses, along the normal of the surface.
+double thickness_at(const SurfaceMesh& surface, const SolidOracle& oracle,
+                    const SurfaceDistance& missed) {
+  const SolidOracle::Hit foot = oracle.nearest(missed.place, -1);
+  const Vector3d normal = triangle_normal(surface, foot.triangle);
+  double thickness = missed.distance;
+  for (const double side : {-1.0, 1.0}) {
+    const auto hit =
+        oracle.first_hit(foot.point, foot.point + side * missed.distance * normal, foot.triangle);
+    if (hit) thickness = std::min(thickness, (hit->point - foot.point).norm());
+  }
+  return thickness;
+}
+
 std::vector<Mismatch> find_mismatches(const TetMesh& mesh, const SurfaceMesh& surface,
                                       const SolidOracle& oracle) {
   std::vector<Mismatch> found;
@@ -135,7 +152,7 @@ std::vector<Mismatch> find_mismatches(const TetMesh& mesh, const SurfaceMesh& su
   if (found.empty()) add_edges_off_patches(mesh, boundary.triangles, oracle, found);
   if (found.empty()) {
     const SurfaceDistance farthest = surface_distance(mesh, surface, oracle);
-    found.push_back({farthest.place, farthest.distance});
+    found.push_back({farthest.place, farthest.distance, thickness_at(surface, oracle, farthest)});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Mismatch& a, const Mismatch& b) { return a.size > b.size; });

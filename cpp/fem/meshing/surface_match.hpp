@@ -28,6 +28,7 @@ SurfaceDistance surface_distance(const TetMesh& mesh, const SurfaceMesh& surface
 struct Mismatch {
   Eigen::Vector3d place;  // m
   double size;            // m
+  double length;          // of the edges of the mesh there, m
 };
 
 // Where a boundary of another topology than its surface goes wrong, the largest first: it is not

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "errors.hpp"
+#include "fem/mesh/boundary_neighbors.hpp"
 #include "fem/meshing/surface_match.hpp"
 #include "fem/meshing/wall_size.hpp"
 
@@ -48,26 +49,29 @@ TopologyKeeper::TopologyKeeper(const PreparedSurface& prepared, const SizeField&
     : prepared_(prepared), size_(size), options_(options) {}
 
 bool TopologyKeeper::accepts(const TetMesh& mesh) {
-  const Topology found = measure_topology(boundary_triangles(mesh));
+  const Triangles boundary = boundary_triangles(mesh);
+  const Topology found = measure_topology(boundary);
   if (found == prepared_.topology) return true;
-  const std::vector<Mismatch> mismatches =
-      find_mismatches(mesh, prepared_.surface, prepared_.oracle);
+  const Topology closed = measure_topology(boundary, boundary_neighbors(mesh));
+  std::vector<Mismatch> mismatches = find_mismatches(mesh, prepared_.surface, prepared_.oracle);
   const double resolved = std::min(kResolved, kOfExtent * extent(prepared_.surface.points));
-  std::vector<Eigen::Vector3d> places;
-  for (const Mismatch& mismatch : mismatches)
-    if (mismatch.size > resolved) places.push_back(mismatch.place);
-  if (places.empty() && found.euler.size() == prepared_.topology.euler.size()) {
+  const auto large = std::count_if(mismatches.begin(), mismatches.end(),
+                                   [&](const Mismatch& m) { return m.size > resolved; });
+  const bool harmless = large == 0 && closed.euler == prepared_.topology.euler;
+  if (harmless && round_ > 0) {
     small_ = static_cast<int>(mismatches.size());
     return true;
   }
-  if (places.empty()) places.push_back(mismatches.front().place);
-  mismatch_ = "the mesh has another topology than its surface near " + place_text(places.front()) +
-              ": " + difference(found, prepared_.topology);
+  mismatch_ = "the mesh has another topology than its surface near " +
+              place_text(mismatches.front().place) + ": " + difference(found, prepared_.topology);
   if (round_ == options_.topology_rounds)
     throw MeshError(explain("it still has after " + std::to_string(round_) +
                             " rounds: a smaller edge length or a thicker wall is needed"));
+  ++round_;
+  if (harmless) return false;  // the same size with more care mends most of them
+  if (large > 0) mismatches.resize(static_cast<std::size_t>(large));  // the first ones
   if (walls_.empty()) walls_ = find_walls(prepared_, size_.base / kOfWall);
-  size_ = refine_at(size_, places, walls_, ++round_);
+  size_ = refine_at(size_, mismatches, walls_, round_);
   return false;
 }
 

@@ -9,14 +9,18 @@
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/prepared_surface.hpp"
 #include "fem/meshing/size_field.hpp"
+#include "fem/meshing/surface_match.hpp"
 #include "fem/meshing/wall_samples.hpp"
 
 namespace codesign::fem {
 
 // Compares the boundary of a mesh with the surface: as many closed pieces, each of the same Euler
-// characteristic, manifold. Where they differ it asks for smaller elements, a few times. Faults no
-// larger than what surfaces are simplified by (0.05 mm, 0.0005 of the extent) are only counted:
-// they sit on ledges of that size, which elements cannot follow at any edge length.
+// characteristic, manifold. Where they differ it asks for another mesh, made with more care and
+// with smaller elements there, a few times. Places where the boundary only touches itself, no
+// larger than what surfaces are simplified by (0.05 mm, 0.0005 of the extent), are counted instead
+// after one such mesh if the boundary, followed along the material there, has the Euler
+// characteristics of the surface: they sit on ledges of that size, which elements cannot follow at
+// any edge length.
 class TopologyKeeper {
  public:
   // `prepared` must outlive the keeper.
@@ -25,7 +29,7 @@ class TopologyKeeper {
 
   // What the next mesh is to be made with.
   const SizeField& size() const { return size_; }
-  Attempt attempt() const { return {round_ > 0, breakdowns_ > 0}; }
+  Attempt attempt() const { return {round_ > 0, round_ > 0, breakdowns_ > 0}; }
 
   // Whether the mesh has the topology of the surface; if not, the size is smaller afterwards.
   // mesh.boundary_face: patches. Throws MeshError, with a place, after the last round.

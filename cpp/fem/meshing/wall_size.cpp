@@ -20,6 +20,7 @@ constexpr double kSmallest = 1.0 / 20.0;  // edge length, relative to the base
 constexpr double kRaise = 1.25;           // of the smallest edge length while there are too many
 constexpr double kDensity = 4.6;          // elements per cube of the edge length (measured)
 constexpr double kAround = 3.0;           // a refined place reaches this many edge lengths
+constexpr double kFiner = 0.5;            // edge length at a fault
 constexpr double kShrink = 0.8;           // of the edge length from round to round
 
 double wall_length(const WallSample& wall, double smallest) {
@@ -75,8 +76,10 @@ SizeField wall_size(const SurfaceMesh& input, double base, const MeshOptions& op
   return size;
 }
 
-SizeField refine_at(const SizeField& size, const std::vector<Vector3d>& places,
+SizeField refine_at(const SizeField& size, const std::vector<Mismatch>& mismatches,
                     const std::vector<WallSample>& walls, int round) {
+  std::vector<Vector3d> places;
+  for (const Mismatch& mismatch : mismatches) places.push_back(mismatch.place);
   const SizePoints near(places, std::vector<double>(places.size(), 0.0), 1.0);
   const double shrink = std::pow(kShrink, round - 1);
   std::vector<Vector3d> points;
@@ -89,11 +92,10 @@ SizeField refine_at(const SizeField& size, const std::vector<Vector3d>& places,
     points.push_back(wall.point);
     sizes.push_back(length);
   }
-  if (points.empty() || round > 2)
-    for (const Vector3d& place : places) {
-      points.push_back(place);
-      sizes.push_back(0.5 * size_at(size, place));
-    }
+  for (const Mismatch& mismatch : mismatches) {
+    points.push_back(mismatch.place);
+    sizes.push_back(kFiner * std::min(mismatch.length, size_at(size, mismatch.place)));
+  }
   SizeField refined = size;
   refined.walls.push_back(
       std::make_shared<const SizePoints>(std::move(points), std::move(sizes), kGrowth));

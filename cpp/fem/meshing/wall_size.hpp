@@ -5,6 +5,7 @@
 
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/size_field.hpp"
+#include "fem/meshing/surface_match.hpp"
 #include "fem/meshing/wall_samples.hpp"
 #include "fem/surface/surface_mesh.hpp"
 
@@ -26,7 +27,7 @@ SizeField wall_size(const SurfaceMesh& surface, double base, const MeshOptions& 
 
 // A size field with smaller elements at the given places: kOfWall of the walls around, less in
 // later rounds; half the length there if no wall around is thin. round: from 1.
-SizeField refine_at(const SizeField& size, const std::vector<Eigen::Vector3d>& places,
+SizeField refine_at(const SizeField& size, const std::vector<Mismatch>& mismatches,
                     const std::vector<WallSample>& walls, int round);
 
 }  // namespace codesign::fem

@@ -145,6 +145,19 @@ def test_a_hole_beneath_the_surface_stays_a_tunnel():
     assert_same_as_surface(mesh, surface, volume_tolerance=5e-3)
 
 
+@pytest.mark.parametrize("angle_deg", [10.0, 28.0])
+@pytest.mark.parametrize("edge_length", [None, 1.5e-3])
+def test_a_rib_that_meets_a_taller_post_at_a_grazing_angle_keeps_the_groove_open(angle_deg, edge_length):
+    """Where the groove ends, the post cuts the upper edges of the rib at that angle."""
+    post = manifold3d.Manifold.cylinder(8.0, 6.0, 6.0, 32)
+    x = 6.0 * float(np.cos(np.radians(angle_deg)))
+    surface = surface_of(post + box((x, 0, 0), (x + 2.2, 12, 5)))
+    mesh = fem.tetrahedralize(surface, edge_length)
+    assert_same_as_surface(mesh, surface)
+    assert mesh.report.small_faults == 0
+    assert mesh.report.refinements <= 1
+
+
 def test_what_cannot_be_kept_is_refused_with_its_place():
     with pytest.raises(MeshError, match=r"another topology than its surface near \(.*\) mm: .*max_vertices"):
         fem.tetrahedralize(tray(), 2e-3, max_vertices=5000)
