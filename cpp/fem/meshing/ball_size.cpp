@@ -4,6 +4,7 @@ namespace codesign::fem {
 namespace {
 
 constexpr double kOfDistance = 0.7;  // to the nearest foreign patch
+constexpr double kOnLine = 1e-6;     // relative to the size
 
 }  // namespace
 
@@ -11,7 +12,8 @@ double BallSize::at(const Eigen::Vector3d& p, int line, double size) const {
   const auto [first, second] = prepared_.lines[static_cast<std::size_t>(line)].patches;
   const auto foreign = [p = first, q = second](int patch) { return patch != p && patch != q; };
   const auto found = prepared_.oracle.nearest_where(p, size / kOfDistance, foreign);
-  return found ? kOfDistance * (found->point - p).norm() : size;
+  if (!found || on_feature_line(prepared_, *found, kOnLine * size)) return size;
+  return kOfDistance * (found->point - p).norm();
 }
 
 }  // namespace codesign::fem

@@ -17,7 +17,8 @@ class BallSize {
   explicit BallSize(const PreparedSurface& prepared) : prepared_(prepared) {}
 
   // The smaller of `size` and a part of the distance from `p` on line `line` to the nearest patch
-  // that is not beside it. [m]
+  // that is not beside it; where that is on a line, `size`, as balls of lines keep apart from each
+  // other. [m]
   double at(const Eigen::Vector3d& p, int line, double size) const;
 
  private:

@@ -5,6 +5,7 @@
 
 #include "fem/surface/bodies.hpp"
 #include "fem/surface/cap_flips.hpp"
+#include "fem/surface/distance.hpp"
 #include "fem/surface/self_intersection.hpp"
 #include "fem/surface/surface_check.hpp"
 
@@ -53,6 +54,18 @@ PreparedSurface prepare_surface(const SurfaceMesh& input, const SizeField& size,
   SolidOracle oracle(surface, patches.of_triangle);
   return {std::move(surface), simplified,       std::move(topology),
           std::move(patches), std::move(lines), std::move(oracle)};
+}
+
+bool on_feature_line(const PreparedSurface& prepared, const SolidOracle::Hit& hit,
+                     double tolerance) {
+  for (int k = 0; k < 3; ++k)
+    if (prepared.patches
+            .line[static_cast<std::size_t>(hit.triangle)][static_cast<std::size_t>(k)] &&
+        squared_distance_to_segment(hit.point, corner(prepared.surface, hit.triangle, k),
+                                    corner(prepared.surface, hit.triangle, (k + 1) % 3)) <
+            tolerance * tolerance)
+      return true;
+  return false;
 }
 
 }  // namespace codesign::fem

@@ -28,4 +28,8 @@ struct PreparedSurface {
 PreparedSurface prepare_surface(const SurfaceMesh& input, const SizeField& size,
                                 const MeshOptions& options);
 
+// Whether a point of the surface lies on a feature line, within `tolerance` [m].
+bool on_feature_line(const PreparedSurface& prepared, const SolidOracle::Hit& hit,
+                     double tolerance);
+
 }  // namespace codesign::fem

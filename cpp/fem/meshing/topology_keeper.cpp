@@ -58,7 +58,7 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
   const auto large = std::count_if(mismatches.begin(), mismatches.end(),
                                    [&](const Mismatch& m) { return m.size > resolved; });
   const bool harmless = large == 0 && closed.euler == prepared_.topology.euler;
-  if (harmless && round_ > 0) {
+  if (harmless && (round_ > 0 || options_.topology_rounds == 0)) {
     small_ = static_cast<int>(mismatches.size());
     return true;
   }

@@ -10,8 +10,6 @@
 #include <set>
 #include <utility>
 
-#include "fem/surface/distance.hpp"
-
 namespace codesign::fem {
 namespace {
 
@@ -29,7 +27,8 @@ constexpr double kLineStep = 0.5;        // of the distance found
 class Sampler {
  public:
   Sampler(const PreparedSurface& prepared, double limit)
-      : surface_(prepared.surface),
+      : prepared_(prepared),
+        surface_(prepared.surface),
         patches_(prepared.patches),
         oracle_(prepared.oracle),
         limit_(limit) {
@@ -85,7 +84,8 @@ class Sampler {
         const Vector3d p = a + s / length * (b - a);
         const auto found = oracle_.nearest_where(p, limit_, foreign);
         const double distance = found ? (found->point - p).norm() : limit_;
-        if (found && !on_line(*found)) samples_.push_back({p, distance, 0.0});
+        if (found && !on_feature_line(prepared_, *found, kOnLine * limit_))
+          samples_.push_back({p, distance, 0.0});
         s += std::max(kLineStep * distance, finest_);
       }
     }
@@ -116,18 +116,7 @@ class Sampler {
     return (hit->point - p).norm() * (facing > kFacing ? facing : 1.0);
   }
 
-  // Lines keep their distance from each other by themselves.
-  bool on_line(const SolidOracle::Hit& hit) const {
-    const double tolerance = kOnLine * limit_;
-    for (int k = 0; k < 3; ++k)
-      if (patches_.line[static_cast<std::size_t>(hit.triangle)][static_cast<std::size_t>(k)] &&
-          squared_distance_to_segment(hit.point, corner(surface_, hit.triangle, k),
-                                      corner(surface_, hit.triangle, (k + 1) % 3)) <
-              tolerance * tolerance)
-        return true;
-    return false;
-  }
-
+  const PreparedSurface& prepared_;
   const SurfaceMesh& surface_;
   const Patches& patches_;
   const SolidOracle& oracle_;

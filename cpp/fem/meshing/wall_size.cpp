@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fem/meshing/mesh_watch.hpp"
 #include "fem/meshing/prepared_surface.hpp"
 #include "fem/surface/surface_check.hpp"
 
@@ -65,6 +66,7 @@ SizeField wall_size(const SurfaceMesh& input, double base, const MeshOptions& op
   SizeField size{base, {}};
   check_size_field(size);
   const SurfaceReport report = check_surface(input);
+  MeshWatch(options).require_affordable(input, size);
   MeshOptions quick = options;
   quick.check_intersections = false;  // the mesher looks for them
   const std::vector<WallSample> walls =
@@ -92,10 +94,12 @@ SizeField refine_at(const SizeField& size, const std::vector<Mismatch>& mismatch
     points.push_back(wall.point);
     sizes.push_back(length);
   }
-  for (const Mismatch& mismatch : mismatches) {
-    points.push_back(mismatch.place);
-    sizes.push_back(kFiner * std::min(mismatch.length, size_at(size, mismatch.place)));
-  }
+  if (points.empty() || round > 1)
+    for (const Mismatch& mismatch : mismatches) {
+      const double now = size_at(size, mismatch.place);
+      points.push_back(mismatch.place);
+      sizes.push_back(kFiner * (round > 1 ? std::min(mismatch.length, now) : now));
+    }
   SizeField refined = size;
   refined.walls.push_back(
       std::make_shared<const SizePoints>(std::move(points), std::move(sizes), kGrowth));

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from codesign import fem
-from codesign.errors import MeshError
+from codesign.errors import MeshError, MeshLimitError
 
 ERGAL = fem.Material("ergal", 71.7e9, 0.3, 462e6, 2800.0)
 
@@ -156,6 +156,11 @@ def test_a_rib_that_meets_a_taller_post_at_a_grazing_angle_keeps_the_groove_open
     assert_same_as_surface(mesh, surface)
     assert mesh.report.small_faults == 0
     assert mesh.report.refinements <= 1
+
+
+def test_an_edge_length_far_too_small_is_refused_before_walls_are_measured():
+    with pytest.raises(MeshLimitError, match=r"max_vertices\): an edge length of at least 0\.\d+ mm is needed"):
+        fem.default_size(tray(), 1e-7)
 
 
 def test_what_cannot_be_kept_is_refused_with_its_place():
