@@ -233,12 +233,10 @@ struct SizingField {
   }
 };
 
-// The edge length on feature lines.
 struct LineSizingField {
   using FT = Kernel::FT;
   using Point_3 = Point;
   using Index = SolidDomain::Index;
-
   SizingField size;
   BallSize balls;
   bool clear_of_patches;

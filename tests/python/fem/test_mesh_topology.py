@@ -153,9 +153,9 @@ def test_a_rib_that_meets_a_taller_post_at_a_grazing_angle_keeps_the_groove_open
     x = 6.0 * float(np.cos(np.radians(angle_deg)))
     surface = surface_of(post + box((x, 0, 0), (x + 2.2, 12, 5)))
     mesh = fem.tetrahedralize(surface, edge_length)
-    assert_same_as_surface(mesh, surface)
+    assert_same_as_surface(mesh, surface, volume_tolerance=5e-3)
     assert mesh.report.small_faults == 0
-    assert mesh.report.refinements <= 1
+    assert mesh.report.refinements <= 2
 
 
 def test_an_edge_length_far_too_small_is_refused_before_walls_are_measured():
