@@ -18,8 +18,9 @@ import msgspec
 import numpy as np
 
 from codesign.errors import UrdfError
-from codesign.robot.description import RobotDescription, number_text
+from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
+from codesign.robot.urdf_xml import number_text
 from codesign.transforms import Matrix, pose
 from codesign.units import DEGREE, MILLIMETER
 
