@@ -8,8 +8,8 @@
 #include "bindings/bindings.hpp"
 #include "bindings/py_model.hpp"
 #include "dynamics/centroidal.hpp"
-#include "dynamics/urdf.hpp"
-#include "dynamics/urdf_text.hpp"
+#include "dynamics/urdf/urdf.hpp"
+#include "dynamics/urdf/urdf_text.hpp"
 #include "errors.hpp"
 
 namespace py = pybind11;

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "dynamics/flight.hpp"
-#include "dynamics/urdf.hpp"
+#include "dynamics/urdf/urdf.hpp"
 
 namespace codesign {
 

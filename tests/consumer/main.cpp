@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "dynamics/urdf.hpp"
+#include "dynamics/urdf/urdf.hpp"
 #include "fem/surface/mass_properties.hpp"
 
 // Prints the mass of a one-link robot and the volume of a tetrahedron with three unit edges: 2 and

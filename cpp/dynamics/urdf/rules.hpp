@@ -6,7 +6,7 @@
 #include <limits>
 #include <string_view>
 
-#include "dynamics/urdf_text.hpp"
+#include "dynamics/urdf/urdf_text.hpp"
 
 // Which elements of a URDF are read, and what the numbers in them must be.
 namespace codesign::dynamics {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "dynamics/flight_settings.hpp"
-#include "dynamics/urdf.hpp"
+#include "dynamics/urdf/urdf.hpp"
 
 // A small flying robot for tests: a trunk with two jets behind it and two arms of three joints (one
 // of them prismatic on request), each with a jet at its end; the right side mirrors the left.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/model.hpp"
-#include "dynamics/urdf.hpp"
+#include "dynamics/urdf/urdf.hpp"
 
 // Robots written as URDF text for the tests.
 namespace codesign::dynamics::testing {

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <locale>
 
-#include "dynamics/urdf.hpp"
+#include "dynamics/urdf/urdf.hpp"
 #include "errors.hpp"
 #include "robots.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "dynamics/urdf.hpp"
+#include "dynamics/urdf/urdf.hpp"
 #include "errors.hpp"
 #include "robots.hpp"
 

@@ -170,8 +170,8 @@ def _rejected(run: ReportData) -> Block:
         "</table></div>"
     )
     text = (
-        "Infeasible designs have numbers but break a constraint or lose the flight; skipped ones are nowhere better than "
-        "a feasible design, so the rest was not computed; failed designs gave no numbers. None enters the ranking."
+        "Infeasible designs have numbers but break a constraint or lose the flight; skipped ones are nowhere better "
+        "than a feasible design, so the rest was not computed; failed designs gave no numbers. None enters the ranking."
     )
     return _block("rejected", "Not feasible", "Designs that are not feasible", text, body)
 

@@ -1,4 +1,4 @@
-#include "dynamics/urdf.hpp"
+#include "dynamics/urdf/urdf.hpp"
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
@@ -11,7 +11,7 @@
 #include <mutex>
 
 #include "dynamics/urdf/bodies.hpp"
-#include "dynamics/urdf_text.hpp"
+#include "dynamics/urdf/urdf_text.hpp"
 #include "errors.hpp"
 
 namespace codesign::dynamics {

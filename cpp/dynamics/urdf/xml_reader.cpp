@@ -1,4 +1,4 @@
-#include "dynamics/xml_reader.hpp"
+#include "dynamics/urdf/xml_reader.hpp"
 
 #include <expat.h>
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "dynamics/urdf_text.hpp"
+#include "dynamics/urdf/urdf_text.hpp"
 
 namespace codesign::dynamics {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dynamics/model.hpp"
-#include "dynamics/xml_reader.hpp"
+#include "dynamics/urdf/xml_reader.hpp"
 
 namespace codesign::dynamics {
 

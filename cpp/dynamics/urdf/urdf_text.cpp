@@ -1,4 +1,4 @@
-#include "dynamics/urdf_text.hpp"
+#include "dynamics/urdf/urdf_text.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 #include "dynamics/spatial.hpp"
 #include "dynamics/urdf/rules.hpp"
-#include "dynamics/urdf_tree.hpp"
+#include "dynamics/urdf/urdf_tree.hpp"
 #include "errors.hpp"
 
 namespace codesign::dynamics {

@@ -1,4 +1,4 @@
-#include "dynamics/urdf_tree.hpp"
+#include "dynamics/urdf/urdf_tree.hpp"
 
 #include <map>
 #include <set>

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/xml_reader.hpp"
+#include "dynamics/urdf/xml_reader.hpp"
 
 namespace codesign::dynamics {
 
