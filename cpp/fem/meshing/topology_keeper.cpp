@@ -57,8 +57,7 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
   const double resolved = std::min(kResolved, kOfExtent * extent(prepared_.surface.points));
   const auto large = std::count_if(mismatches.begin(), mismatches.end(),
                                    [&](const Mismatch& m) { return m.size > resolved; });
-  const bool harmless = large == 0 && closed.euler == prepared_.topology.euler;
-  if (harmless && (round_ > 0 || options_.topology_rounds == 0)) {
+  if (large == 0 && closed.euler == prepared_.topology.euler) {
     small_ = static_cast<int>(mismatches.size());
     return true;
   }
@@ -68,7 +67,6 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
     throw MeshError(explain("it still has after " + std::to_string(round_) +
                             " rounds: a smaller edge length or a thicker wall is needed"));
   ++round_;
-  if (harmless) return false;  // the same size with more care mends most of them
   if (large > 0) mismatches.resize(static_cast<std::size_t>(large));  // the first ones
   if (walls_.empty()) walls_ = find_walls(prepared_, size_.base / kOfWall);
   size_ = refine_at(size_, mismatches, walls_, round_);
