@@ -85,9 +85,10 @@ def _face_problems(part: PartConfig, config: StudyConfig, built: Part) -> Iterat
     named = face_names(built.fem_shape(config.fem.geometry))
     surface = None if hasattr(built, "stress_case") else built.fem_surface(config.fem.geometry)
     held = {held_face(text)[0] for text in part.supports}
-    for face in [*held, *(mass.face for mass in part.masses)]:
-        yield from unknown(f"parts.{part.name}.supports or masses", "face", face, named)
+    for face in held:
+        yield from unknown(f"parts.{part.name}.supports", "face", face, named)
     for mass in part.masses:
+        yield from unknown(f"parts.{part.name}.masses", "face", mass.face, named)
         if mass.interface:
             yield from unknown(f"parts.{part.name}.masses", "interface", mass.interface, list(built.interfaces()))
     for case in part.load_cases:

@@ -19,7 +19,8 @@ from codesign.study.loading import _load
 from fake_study import study
 
 CHAIN = PACKAGE / "chain" / "study.py"
-NOT_LOADED = {"OCP", "pymoo"}  # exact geometry for STEP files; ranking of finished evaluations
+# exact geometry for STEP files; ranking of finished evaluations; drawings of parts
+NOT_LOADED = {"OCP", "pymoo", "matplotlib", "ezdxf"}
 NO_NUMBERS = NOT_LOADED | {"trimesh"}  # meshes of packages and GLB files, which no evaluation writes
 
 

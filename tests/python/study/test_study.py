@@ -42,7 +42,8 @@ def copy(tmp_path):
 
 def test_shipped_studies_load():
     assert shipped_studies() == [
-        "gimbal_quad", "hexarotor", "ironcub", "ironcub_paper", "ironcub_robust", "ironcub_strength",
+        "gimbal_quad", "hexarotor", "ironcub", "ironcub_paper", "ironcub_retuned", "ironcub_robust",
+        "ironcub_strength", "ironcub_whole",
     ]  # fmt: skip
     for name in shipped_studies():
         assert load_study(name).baseline is not None
