@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cassert>
+#include <cmath>
+#include <limits>
 
 namespace codesign::dynamics {
 
@@ -39,6 +41,14 @@ Matrix3d cross_columns(const Vector3d& d, const Matrix3d& m) {
   Matrix3d result;
   for (int i = 0; i < 3; ++i) result.col(i) = d.cross(m.col(i));
   return result;
+}
+
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+// What a joint moves, or exactly zero where that is no more than rounding of the whole: a singular
+// mass matrix then gives no numbers instead of huge ones.
+double unless_rounding(double moved, double whole) {
+  return std::abs(moved) > kRounding * whole ? moved : 0.0;
 }
 
 // Removes the motion that the joint leaves free, and hands the rest to the parent.
@@ -121,12 +131,12 @@ void forward_dynamics(const Model& model, const KinematicsData& kin, const Inert
     if (body.type == JointType::kRevolute) {
       a.joint_force.noalias() = a.coupling * axis;
       a.joint_moment.noalias() = a.angular * axis;
-      a.joint_inertia = axis.dot(a.joint_moment);
+      a.joint_inertia = unless_rounding(axis.dot(a.joint_moment), a.angular.norm());
       a.joint_force_left = tau[body.joint] - axis.dot(a.moment);
     } else {
       a.joint_force.noalias() = a.linear * axis;
       a.joint_moment.noalias() = a.coupling.transpose() * axis;
-      a.joint_inertia = axis.dot(a.joint_force);
+      a.joint_inertia = unless_rounding(axis.dot(a.joint_force), a.linear.norm());
       a.joint_force_left = tau[body.joint] - axis.dot(a.force);
     }
     hand_down(a, kin.bodies[i].offset, scratch.bodies[static_cast<std::size_t>(body.parent)]);

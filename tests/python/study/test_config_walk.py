@@ -23,9 +23,13 @@ from codesign.study.config import LOAD_KINDS, StudyConfig
 from codesign.study.loading import study_from
 
 Place = tuple[str | int, ...]
-# Of a load: one kind; of a part: one load case or several.
+# Of a load: one kind; of a part: one load case or several; of a change: a joint or a link.
 EITHER = (
     *LOAD_KINDS, "face", "interface", "point_mm", "loads", "flown", "cases", "min", "max", "step", "values", "choices",
+    "joint", "link",
+)  # fmt: skip
+PREDICTIVE = (  # of the other controller and its paths: not walked yet
+    "mpc", "servo", "fuel", "jet_models", "waypoints", "kind", "rest_s", "duration_s", "pulses",
 )  # fmt: skip
 NAN, INFINITY = math.nan, math.inf
 WHOLE = """
@@ -135,7 +139,8 @@ def complete_flight(raw: dict[str, Any]) -> None:
     """Fills in start, rates, drives, air and fuel of the flight."""
     raw |= {"extends": "", "without": []}
     raw["flight"] |= {
-        "jet_model": "turbine", "duration_s": 0.08, "torque_step_s": 0.004, "plant_step_s": 0.002,
+        "controller": "momentum_qp", "jet_model": "turbine", "duration_s": 0.08, "torque_step_s": 0.004,
+        "plant_step_s": 0.002,
         "integrator": "runge_kutta_4", "seeds": [1, 2],
         "drives": {"momentum_delay_s": 0.008, "torque_delay_s": 0.004, "torque_lag_s": 0.005, "slip_speed_rad_s": 0.02},
         "drag": {"frames": ["front_jet"], "areas_m2": [0.2], "positions_m": [[0.0, 0.0, 0.1]],
@@ -226,7 +231,7 @@ def places(kind: kinds.Type, node: Any, place: Place = ()) -> Iterator[tuple[Pla
         yield place, kind
     if isinstance(kind, kinds.StructType):
         for field in kind.fields:
-            if field.encode_name in EITHER and field.encode_name not in node:
+            if field.encode_name in (*EITHER, *PREDICTIVE) and field.encode_name not in node:
                 continue
             assert field.encode_name in node, f"{place}: the template lacks {field.encode_name}"
             yield from places(field.type, node[field.encode_name], (*place, field.encode_name))

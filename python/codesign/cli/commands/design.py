@@ -77,8 +77,12 @@ def fly(
             for key, value in values.items():
                 table.add_row(f"{family} {key}", f"{value:.8g}")
         flight = dict(result["flight"])
+        joints = flight.pop("joints")
         for key, value in (flight | flight.pop("saturation")).items():
             table.add_row(key, shown(value))
+        for name, peak in joints.items():
+            values = (shown(peak[f"peak_{kind}"], 3) for kind in ("torque", "speed", "power"))
+            table.add_row(f"{name} at most", "{} N·m, {} rad/s, {} W".format(*values))
         out.print(table)
     return 0 if result["status"] == "completed" else 1
 

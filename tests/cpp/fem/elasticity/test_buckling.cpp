@@ -39,14 +39,6 @@ double stress_work(const TetMesh& mesh, const Material& material, const Eigen::V
   return free.dot(multiply(assemble_geometric_stiffness(mesh, material, u, pattern), free));
 }
 
-LowerMatrix diagonal(const Eigen::VectorXd& values) {
-  LowerMatrix a;
-  for (int i = 0; i <= values.size(); ++i) a.start.push_back(i);
-  for (int i = 0; i < values.size(); ++i) a.row.push_back(i);
-  a.value.assign(values.data(), values.data() + values.size());
-  return a;
-}
-
 // A column of square section 1 along x, clamped at x = 0.
 constexpr double kLength = 20.0;
 TetMesh column(int cells) {
