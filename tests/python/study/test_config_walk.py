@@ -160,11 +160,10 @@ def complete(raw: dict[str, Any]) -> None:
     """Fills in what has a default, so that every key of the configuration has a value."""
     raw["robot"]["visuals"] = "package://absent/robot.urdf"
     stretch = {"link": "front_strut", "direction": [0.0, 0.0, 1.0], "from_m": -0.1, "to_m": 0.1, "pole_m": 0.0}
-    raw["robot"]["changes"] = [{"variable": "longer", **stretch, "per_unit": 1.0, "mass_share": 1.0}]
-    raw["variables"]["longer"] = {"min": 0, "max": 10, "step": 1, "unit": "mm"}
+    raw["robot"]["changes"] = [{"variable": "reach", **stretch, "per_unit": 1.0, "mass_share": 1.0}]
     for name, variable in raw["variables"].items():
         raw["variables"][name] = {"unit": "", "label": f"the {name}", "sets": []} | variable
-    raw["baseline"] |= {"longer": 0, "gain": 50.0, "width": 20.0, "alloy": "steel", "bar": "flat"}
+    raw["baseline"] |= {"gain": 50.0, "width": 20.0, "alloy": "steel", "bar": "flat"}
     raw["parts"][0] |= {"density_kg_m3": 2810.0, "options": {"name": "strut"}}
     place = raw["parts"][0]["placements"][0]
     pose = {"xyz_mm": [0.0, 0.0, 0.0], "rpy_deg": [0.0, 0.0, 0.0]}
