@@ -1,27 +1,13 @@
 #pragma once
 
-#include <cholmod.h>
-
 #include "fem/la/lower_matrix.hpp"
+
+struct cholmod_sparse_struct;  // CHOLMOD's own, of cholmod.h
 
 namespace codesign::fem {
 
 // A symmetric matrix as CHOLMOD sees it: read in place, so it must outlive the view; CHOLMOD never
 // writes to it.
-inline cholmod_sparse cholmod_view(const LowerMatrix& a) {
-  cholmod_sparse s{};
-  s.nrow = s.ncol = static_cast<std::size_t>(a.size());
-  s.nzmax = a.row.size();
-  s.p = const_cast<int*>(a.start.data());
-  s.i = const_cast<int*>(a.row.data());
-  s.x = const_cast<double*>(a.value.data());
-  s.stype = -1;
-  s.itype = CHOLMOD_INT;
-  s.xtype = CHOLMOD_REAL;
-  s.dtype = CHOLMOD_DOUBLE;
-  s.sorted = 1;
-  s.packed = 1;
-  return s;
-}
+cholmod_sparse_struct cholmod_view(const LowerMatrix& a);
 
 }  // namespace codesign::fem
