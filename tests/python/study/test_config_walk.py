@@ -184,13 +184,8 @@ def complete(raw: dict[str, Any]) -> None:
         {"name": "thrust", "loads": loads, "safety_factor_min": 5.0},
         {"name": "flown", "flown": {interface: "seat"}, "safety_factor_min": 5.0},
     ]
-    raw["parts"][0]["masses"] = [
-        {
-            "face": "seat",
-            "interface": interface,
-            **{"mass_kg": 0.1, "point_mm": [0.0, 0.0, 9.0], "inertia_kg_m2": [0, 0, 0]},
-        }
-    ]
+    mass = {"mass_kg": 0.1, "point_mm": [0.0, 0.0, 9.0], "inertia_kg_m2": [0, 0, 0]}
+    raw["parts"][0]["masses"] = [{"face": "seat", "interface": interface, **mass}]
     raw["fem"] |= {"load": "uniform", "support": "published", "exclusion_distance_mm": 3.0, "memory_limit_mib": 1400}
     raw["fem"]["edge_length_mm"] = 2.0
     complete_flight(raw)
@@ -205,8 +200,7 @@ def complete(raw: dict[str, Any]) -> None:
         "buckling_factor_min": 2.0, "limits": {"flight.max_torque": {"min": 0.0, "max": 60.0}},
     }  # fmt: skip
     raw["optimizer"] |= {"algorithm": "nsga2", "crossover_probability": 0.9, "mutation_probability": 0.2, "seed": 1}
-    raw["optimizer"]["evaluations"] = 160
-    raw["execution"]["lazy"] = True
+    raw["optimizer"]["evaluations"], raw["execution"]["lazy"] = 160, True
 
 
 @pytest.fixture(scope="module")
