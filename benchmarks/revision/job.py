@@ -31,16 +31,20 @@ PLACES = {
     "analyze_part": ("codesign._core",),
     "fly_robot": ("codesign.chain.fly", "codesign.pipeline"),
 }
+FORMER = {"analyze_part": "analyse_part"}  # names that earlier revisions had
 
 
 def find(name: str) -> Callable[..., Any]:
     """The function of this name, wherever this revision has it."""
     for place in PLACES[name]:
         try:
-            function: Callable[..., Any] = getattr(importlib.import_module(place), name)
-        except (ImportError, AttributeError):
+            module = importlib.import_module(place)
+        except ImportError:
             continue
-        return function
+        for spelling in (name, FORMER.get(name, name)):
+            function: Callable[..., Any] | None = getattr(module, spelling, None)
+            if function is not None:
+                return function
     raise SystemExit(f"revision_job.py: this revision has no {name} in {', '.join(PLACES[name])}")
 
 
