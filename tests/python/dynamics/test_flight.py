@@ -55,7 +55,7 @@ def test_published_row_gives_the_published_outputs(shared_data: Path, row_id: st
 
 def test_unphysical_inertias_are_refused_unless_asked_for(shared_data: Path) -> None:
     urdf = (shared_data / "published" / "optim1.urdf").read_text()
-    with pytest.raises(UrdfError, match="jet_turbine"):
+    with pytest.raises(UrdfError, match='"r_elbow_1" with those fixed to it: non-physical inertia'):
         dyn.load_urdf(urdf, joints=ironcub_flight.JOINTS)
 
 
