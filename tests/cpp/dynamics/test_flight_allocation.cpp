@@ -2,25 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <atomic>
-#include <cstddef>
 
+#include "allocation_count.hpp"
 #include "dynamics/flight.hpp"
 #include "dynamics/robot_terms.hpp"
 #include "flying_robot.hpp"
-
-namespace {
-std::atomic<long> allocation_count{0};
-}
-
-#ifndef __SANITIZE_ADDRESS__
-// Eigen and operator new both end in malloc: counting here sees everything.
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {
-  ++allocation_count;
-  return __libc_malloc(size);
-}
-#endif
 
 namespace codesign::dynamics {
 namespace {
@@ -38,9 +24,7 @@ long allocations(const FlightSettings& settings, double duration,
 class FlightAllocationTest : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(FlightAllocationTest, LoopDoesNotAllocate) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer owns malloc";
-#endif
+  if (!kAllocationsAreCounted) GTEST_SKIP() << "malloc cannot be counted in this build";
   FlightSettings settings = testing::settings();
   settings.integrator = GetParam();
   settings.disturbances.gust_deviation.setConstant(1.0);
@@ -62,9 +46,7 @@ TEST_P(FlightAllocationTest, LoopDoesNotAllocate) {
 
 // An indefinite mass matrix is factored with pivoting, a torque at its limit brings in the box QP.
 TEST_P(FlightAllocationTest, LoopDoesNotAllocateWithAnIndefiniteMassMatrix) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the sanitizer owns malloc";
-#endif
+  if (!kAllocationsAreCounted) GTEST_SKIP() << "malloc cannot be counted in this build";
   const Model model = testing::unphysical_model();
   FlightSettings settings = testing::settings();
   RobotTerms terms(model, settings.actuators);

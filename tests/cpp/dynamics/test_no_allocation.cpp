@@ -2,25 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
+#include "allocation_count.hpp"
 #include "sample.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || !defined(__GLIBC__)
-#define CODESIGN_CANNOT_COUNT
-#endif
-
-namespace {
-long allocations = 0;
-}
-
-#ifndef CODESIGN_CANNOT_COUNT
-extern "C" void* __libc_malloc(std::size_t);  // NOLINT: glibc's name
-extern "C" void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-#endif
 
 namespace codesign::dynamics {
 namespace {
@@ -28,9 +11,7 @@ namespace {
 using namespace testing;
 
 TEST(NoAllocation, PerStepFunctionsLeaveTheHeapAlone) {
-#ifdef CODESIGN_CANNOT_COUNT
-  GTEST_SKIP() << "malloc cannot be counted in this build";
-#endif
+  if (!kAllocationsAreCounted) GTEST_SKIP() << "malloc cannot be counted in this build";
   const Model model = load_urdf(random_robot(30, 1));
   const State state = random_state(model, 1);
   KinematicsData kin(model);
@@ -44,7 +25,7 @@ TEST(NoAllocation, PerStepFunctionsLeaveTheHeapAlone) {
   Matrix6Xd J(6, n), C(6, n);
   Eigen::Matrix<double, 3, Eigen::Dynamic> Jc(3, n);
   const std::vector<FrameWrench> wrenches = {{frame, Vector6d::Ones()}};
-  const long before = allocations;
+  const long before = allocation_count;
   forward_kinematics(model, state.base, state.s, kin);
   forward_velocities(model, kin, state.nu, velocity);
   compute_inertias(model, kin, inertia);
@@ -63,7 +44,7 @@ TEST(NoAllocation, PerStepFunctionsLeaveTheHeapAlone) {
   const Pose pose = frame_pose(model, kin, frame);
   const double energy =
       kinetic_energy(model, kin, inertia, velocity) + potential_energy(kin, inertia);
-  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(allocation_count - before, 0);
   EXPECT_GT(before, 0);  // the counter works
   EXPECT_TRUE(total.allFinite() && pose.R.allFinite() && std::isfinite(energy));
 }
