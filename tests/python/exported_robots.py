@@ -20,7 +20,7 @@ from codesign.robot.sdf import sdf_text
 from codesign.robot.srdf import srdf_text
 
 ORIGINAL = {
-    "ironcub": {"angle": 15, "distance": 42, "offset": 80, "length": 108},
+    "ironcub_paper": {"angle": 15, "distance": 42, "offset": 80, "length": 108},
     "gimbal_quad": {"reach": 200, "height": 30},
 }
 

@@ -70,7 +70,7 @@ def servos() -> dyn.ServoSettings:
 @functools.cache
 def robot() -> dyn.Model:
     """The standard study's robot of `DESIGN`."""
-    return dyn.load_urdf(load_study().build_robot(DESIGN), joints=ironcub_flight.JOINTS)
+    return dyn.load_urdf(load_study("ironcub_paper").build_robot(DESIGN), joints=ironcub_flight.JOINTS)
 
 
 def actuators() -> list[dyn.Actuator]:

@@ -134,7 +134,7 @@ class Study:
     identity = Identity({"study file": "5f2c9e77aa10"})
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(load_study("ironcub"), name)
+        return getattr(load_study("ironcub_paper"), name)
 
     def evaluate(self, design: Any) -> Evaluation:
         """The made-up evaluation."""

@@ -114,7 +114,7 @@ def test_joints_turn_and_shift_the_jets_as_finite_differences_say():
 
 
 def test_shipped_studies_can_fly():
-    for name in ("ironcub", "gimbal_quad", "hexarotor"):
+    for name in ("ironcub_paper", "ironcub", "gimbal_quad", "hexarotor"):
         study = load_study(name)
         found = study_controllability(study, study.baseline)
         assert (found.rank, found.reason) == (6, None)

@@ -21,7 +21,7 @@ from codesign.study.loading import STUDIES
 
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
 STUDY = """
-extends = "ironcub"
+extends = "ironcub_paper"
 name = "flown"
 without = ["parts.jetpack_bracket.loads", "parts.forearm_support.loads"]
 

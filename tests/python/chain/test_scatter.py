@@ -33,7 +33,7 @@ def test_a_length_beyond_the_standard_is_refused() -> None:
 
 def test_a_sample_stays_within_the_tolerances_and_fills_them() -> None:
     """500 samples: lengths within 0.3 mm, a third of that as deviation, strength 4 %, jets within half a degree."""
-    config = load_study("ironcub").config
+    config = load_study("ironcub_paper").config
     lengths, strengths, tilts = [], [], []
     for number in range(500):
         changed, values = made(config, DESIGN, number)
@@ -55,7 +55,7 @@ def test_a_sample_stays_within_the_tolerances_and_fills_them() -> None:
 
 def test_designs_are_made_with_the_same_luck() -> None:
     """The same sample changes two designs by the same share of their tolerances, and is the same when drawn again."""
-    config = load_study("ironcub").config
+    config = load_study("ironcub_paper").config
     _, one = made(config, DESIGN, 7)
     _, other = made(config, DESIGN | {"length": 130.0}, 7)
     assert (one["length"] - 108.0) / 0.3 == pytest.approx((other["length"] - 130.0) / 0.5)

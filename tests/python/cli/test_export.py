@@ -28,7 +28,7 @@ PARTS = {"jetpack_bracket": 2, "forearm_support": 1, "forearm_support_mirrored":
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("export") / "order"
     written = export_design(
-        load_study("ironcub"), DESIGN, folder, chosen="design 7 of a", organization="workshop", formats=KINDS
+        load_study("ironcub_paper"), DESIGN, folder, chosen="design 7 of a", organization="workshop", formats=KINDS
     )
     assert sorted(written) == sorted(path for path in folder.rglob("*") if path.is_file())
     assert not list(folder.parent.glob(".*"))
@@ -190,7 +190,7 @@ def test_known_numbers_are_not_computed_again_where_no_field_is_asked_for(
 
 
 def test_a_part_without_a_place_is_made_once() -> None:
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     bracket, forearm = study.config.parts
     config = msgspec.structs.replace(study.config, parts=[msgspec.structs.replace(bracket, placements=[]), forearm])
     parts = study.build_parts(DESIGN)
@@ -202,14 +202,14 @@ def test_a_part_without_a_place_is_made_once() -> None:
 def test_another_design_is_never_overwritten_silently(out: Path, tmp_path: Path) -> None:
     other = {**DESIGN, "angle": 16}
     before = (out / MANIFEST).read_bytes()
-    with pytest.raises(ExportError, match=r"holds revision \w+ of study ironcub \(angle = 15, .*--force"):
-        export_design(load_study("ironcub"), other, out)
+    with pytest.raises(ExportError, match=r"holds revision \w+ of study ironcub_paper \(angle = 15, .*--force"):
+        export_design(load_study("ironcub_paper"), other, out)
     assert (out / MANIFEST).read_bytes() == before
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(ExportError, match="not empty and holds no export"):
-        export_design(load_study("ironcub"), DESIGN, tmp_path)
+        export_design(load_study("ironcub_paper"), DESIGN, tmp_path)
     with pytest.raises(ExportError, match="is a file"):
-        export_design(load_study("ironcub"), DESIGN, tmp_path / "notes.txt")
+        export_design(load_study("ironcub_paper"), DESIGN, tmp_path / "notes.txt")
 
 
 def write(folder: Path, revision: str, *files: str, force: bool = False) -> None:
@@ -250,9 +250,9 @@ def test_a_failed_export_leaves_the_earlier_one(tmp_path: Path) -> None:
 
 
 def test_a_design_of_a_run(tmp_path: Path) -> None:
-    synthetic_run.write_run(tmp_path / "a", synthetic_run.evaluations(40), study=load_study("ironcub"))
+    synthetic_run.write_run(tmp_path / "a", synthetic_run.evaluations(40), study=load_study("ironcub_paper"))
     study, design, words = design_of_run(tmp_path / "a", "recommended")
-    assert study.name == "ironcub"
+    assert study.name == "ironcub_paper"
     assert words.endswith("of a (recommended)")
     number = words.split()[1]
     assert design_of_run(tmp_path / "a", number)[1] == design

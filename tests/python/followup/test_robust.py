@@ -113,7 +113,7 @@ def test_coarse_study_is_the_study_on_part_of_its_grid(tmp_path) -> None:
 
 
 def test_seed_in_a_trajectory_name_redraws_its_disturbances() -> None:
-    config = load_study("ironcub").config
+    config = load_study("ironcub_paper").config
     calm = config.trajectories["envelope"]
     gusty = msgspec.structs.replace(
         calm, disturbances=DisturbancesConfig(gust_deviation_n=(5.0, 5.0, 2.0), mass_deviation=0.01, seed=3)

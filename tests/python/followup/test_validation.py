@@ -93,7 +93,7 @@ def test_the_page_shows_means_and_lost_flights(run):
 
 def momentum(trajectory: str) -> float:
     """Momentum error of a light design's robot, without the parts' analysis."""
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     value: float = fly_robot(study, study.build_robot(LIGHT), trajectory=trajectory)["objectives"]["momentum"]
     return value
 
@@ -109,13 +109,13 @@ def test_disturbances_differ_by_seed_and_matter():
 @pytest.mark.parametrize("name", ["trajectory_1@x", "trajectory_1@1:gusts=3", "trajectory_1@1:mass_deviation=9", "t@1"])
 def test_wrong_disturbances_are_refused(name):
     with pytest.raises(StudyError, match="trajectory"):
-        find_trajectory(load_study("ironcub").config, name)
+        find_trajectory(load_study("ironcub_paper").config, name)
 
 
 @pytest.fixture
 def real_run(tmp_path: Path) -> Path:
     """A run whose rows are made up but whose study is the shipped one, so that its designs can be flown."""
-    return synthetic_run.write_run(tmp_path / "run", synthetic_run.evaluations(40), study=load_study("ironcub"))
+    return synthetic_run.write_run(tmp_path / "run", synthetic_run.evaluations(40), study=load_study("ironcub_paper"))
 
 
 def test_validate_flies_chosen_designs_isolated_and_keeps_the_flights(real_run):

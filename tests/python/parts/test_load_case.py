@@ -91,7 +91,7 @@ def test_confirmation_stands_beside_the_analysis(part):
 
 def test_a_half_part_has_the_frequencies_of_the_whole():
     bracket = JetpackBracket(15, 42)
-    settings = replace(stress_settings(load_study("ironcub").config, bracket.name), modes=4)
+    settings = replace(stress_settings(load_study("ironcub_paper").config, bracket.name), modes=4)
     case = part_case(bracket, settings)
     case.size = fem.SizeField(6e-3)
     halves = _core.analyze_part(case).frequencies
@@ -135,7 +135,7 @@ def test_a_study_may_limit_the_buckling_factor(tmp_path, width):
 
 def test_no_node_overshoots_where_a_patch_hardly_determines_its_stress():
     """81 MPa beside an edge with 2 MPa, before patches were enlarged."""
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     part = study.build_parts([1, 42, 84, 52])["forearm_support"]
     result = _core.analyze_part(part_case(part, stress_settings(study.config, "forearm_support"))).result
     assert result.peak_stress == pytest.approx(32e6, rel=0.05)

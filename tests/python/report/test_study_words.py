@@ -44,7 +44,7 @@ def meanings(study: str) -> dict[str, str]:
 
 def test_joint_groups_are_named_with_their_weights():
     assert "gimbals counted once." in meanings("gimbal_quad")["joint_velocity"]
-    said = meanings("ironcub")["joint_velocity"]
+    said = meanings("ironcub_paper")["joint_velocity"]
     assert "torso counted twice, left arm counted once and right arm counted once" in said
     assert "left leg and right leg not counted" in said
 
@@ -62,7 +62,7 @@ def test_a_load_case_names_load_face_and_support():
 
 
 def test_a_density_that_is_not_the_materials_is_said():
-    known = part_words(load_study("ironcub").config)
+    known = part_words(load_study("ironcub_paper").config)
     assert known["jetpack_bracket"].warning == ""
     assert "4410\u202fkg/m³ instead of 2800" in known["forearm_support"].warning
     assert "weighs 63\u202f% of the mass shown" in known["forearm_support"].warning

@@ -39,4 +39,4 @@ def test_failed_evaluations_are_not_kept():
 
 
 def test_tests_have_a_cache_of_their_own():
-    assert "pytest" in str(default_cache_path("ironcub"))
+    assert "pytest" in str(default_cache_path("ironcub_paper"))

@@ -18,7 +18,7 @@ from codesign.transforms import quaternion, rotation_about
 
 
 def fly(jets: str) -> tuple[dyn.FlightLog, dyn.FlightSettings]:
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     settings = flight_settings(study.config.flight, find_trajectory(study.config, "envelope"), jets)
     settings.duration = 1.0
     model = dyn.load_urdf(study.base_robot.to_text(), joints=joint_names(study.config.flight))
@@ -73,7 +73,7 @@ def test_commands_have_the_unit_of_the_jets(flight):
 def test_parquet_has_units_and_axes(flight, tmp_path):
     log, settings = flight
     columns = flown_columns(log, settings)
-    write_parquet(columns, tmp_path / "flight.parquet", flown_metadata(log, settings, {"study": "ironcub"}))
+    write_parquet(columns, tmp_path / "flight.parquet", flown_metadata(log, settings, {"study": "ironcub_paper"}))
     table = parquet.read_table(tmp_path / "flight.parquet")
     assert table.column_names == [column.name for column in columns]
     for column in columns:
@@ -87,7 +87,7 @@ def test_parquet_has_units_and_axes(flight, tmp_path):
 
 def test_mcap_is_read_by_name_and_exact(flight, tmp_path):
     log, settings = flight
-    write_mcap(log, settings, "root_link", tmp_path / "flight.mcap", {"study": "ironcub"})
+    write_mcap(log, settings, "root_link", tmp_path / "flight.mcap", {"study": "ironcub_paper"})
     assert [path.name for path in tmp_path.iterdir()] == ["flight.mcap"]
     found: dict[str, list] = {}
     with AnyReader([tmp_path / "flight.mcap"], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
@@ -97,7 +97,7 @@ def test_mcap_is_read_by_name_and_exact(flight, tmp_path):
         "/flight": 1,
         **dict.fromkeys(("/joint_states", "/jets", "/jet_commands", "/odom"), log.samples),
     }
-    assert json.loads(found["/flight"][0][1].data) == {"study": "ironcub"}
+    assert json.loads(found["/flight"][0][1].data) == {"study": "ironcub_paper"}
     for k, (time, message) in enumerate(found["/joint_states"]):
         assert time == round(log.time[k] * 1e9) == message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
         assert message.name == settings.joints

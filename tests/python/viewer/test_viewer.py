@@ -186,7 +186,7 @@ def test_package_paths_follow_the_usual_variables(tmp_path):
 
 def test_real_link_meshes_replace_the_plain_shapes_where_they_are_installed(shared_data, tmp_path):
     shutil.copytree(shared_data / "ironcub_mk3", tmp_path / "iRonCub-Mk3" / "iRonCub")
-    study = load_study("ironcub")
+    study = load_study("ironcub_paper")
     plain = robot_scene(study, synthetic_run.BASELINE, packages=())
     real = robot_scene(study, synthetic_run.BASELINE, packages=(tmp_path,))
     assert {p.link for p in real.pieces} == {p.link for p in plain.pieces}
