@@ -28,7 +28,7 @@ help:
 	@echo 'make setup  only the set-up: Debian packages, $(VENV), build'
 	@echo 'make check  format, lint, types, stubs, layering (part of make test)'
 	@echo 'make test-lowest  the main jobs with the lowest versions of all packages that pyproject.toml allows'
-	@echo 'make test-consumers  exported robots in Drake, parts of build123d (500 MB the first time)'
+	@echo 'make test-consumers  exported robots in Drake, parts of build123d, searches of numba (600 MB the first time)'
 	@echo 'make coverage  the tests, with the share of the Python lines that they reach'
 	@echo 'make lock   write the installed versions into constraints.txt, which the set-up uses'
 	@echo 'make stubs  regenerate python/codesign/_core/*.pyi'
@@ -91,8 +91,7 @@ test-lowest: setup
 
 test-consumers: $(VENV)/test.stamp
 	$(INSTALL) --requirement <($(BIN)/python scripts/dependencies.py consumers)
-	$(BIN)/python -m pytest tests/python/robot/test_drake.py tests/python/robot/test_mjcf.py tests/python/robot/test_sdf.py \
-		tests/python/parts/test_imported.py
+	$(BIN)/python -m pytest tests/consumers tests/python/robot/test_mjcf.py tests/python/robot/test_sdf.py
 
 coverage: $(VENV)/test.stamp
 	$(PYTEST) --cov --cov-report=term:skip-covered --cov-report=html:build/coverage

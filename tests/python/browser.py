@@ -12,10 +12,10 @@ FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-
 
 
 def open_browser() -> Iterator[Any]:
-    """A Chromium driven by playwright; skips the test where the machine has none."""
+    """A Chromium driven by playwright; it is in apt-packages-test.txt."""
     executable = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if executable is None:
-        pytest.skip("no Chromium on this machine (apt: chromium)")
+        pytest.fail("no Chromium on this machine (apt: chromium)")
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=executable, args=FLAGS)
         yield browser

@@ -171,7 +171,7 @@ def _agemoea(settings: Settings, _n_objectives: int, common: dict[str, Any]) -> 
         from pymoo.algorithms.moo import age, age2
     except Exception as error:  # what pymoo raises
         raise ExecutionError(
-            f"algorithm {settings.algorithm} needs the package numba (pip install numba): {error}"
+            f"algorithm {settings.algorithm} needs the package numba (pip install 'codesign[age]'): {error}"
         ) from error
     return (age.AGEMOEA if settings.algorithm == "agemoea" else age2.AGEMOEA2)(**common)
 

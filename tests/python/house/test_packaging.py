@@ -1,7 +1,6 @@
 """The package as others use it: built and installed by colcon, found by a C++ project, imported from there."""
 
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -36,7 +35,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_cpp_consumer_finds_and_links_the_libraries(installed, tmp_path):
-    source = REPOSITORY / "tests" / "consumer"
+    source = REPOSITORY / "tests" / "cmake_project"
     run("cmake", "-S", str(source), "-B", str(tmp_path), f"-DCMAKE_PREFIX_PATH={installed}", cwd=tmp_path)
     run("cmake", "--build", str(tmp_path), cwd=tmp_path)
     assert run(str(tmp_path / "consumer"), cwd=tmp_path).split() == ["2", "0.166667"]
@@ -47,11 +46,3 @@ def test_installed_python_package_imports(installed):
     code = "import codesign._core, codesign; print(codesign.__version__, codesign._core.__file__)"
     printed = run(sys.executable, "-S", "-c", code, cwd=installed, PYTHONPATH=f"{site}:{':'.join(sys.path)}")
     assert str(installed) in printed
-
-
-def test_no_declared_package_is_skipped_when_it_is_missing():
-    """A broken installation must not look green: only what no extra names may be left out."""
-    skipping = re.compile(r'importorskip\("(\w+)')
-    found = {name for file in (REPOSITORY / "tests").rglob("*.py") for name in skipping.findall(file.read_text())}
-    large = {"pydrake", "build123d"}  # `make test-consumers` installs these
-    assert found <= {"numba", "lxml"} | large

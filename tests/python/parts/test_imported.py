@@ -1,7 +1,6 @@
 """Parts of other CAD tools: files and build123d objects have mass, faces, files and strength as own parts."""
 
 import hashlib
-import importlib.util
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -169,12 +168,3 @@ def test_the_example_with_a_step_file(tmp_path):
     assert "40.56 g" in printed  # (80 * 16 - 9 pi) * 12 mm³ at 2700 kg/m³
     assert "mount" in printed
     assert load_step(tmp_path / "strut_bored.step").faces
-
-
-@pytest.mark.skipif(importlib.util.find_spec("build123d") is None, reason="build123d is in an extra of that name")
-def test_the_example_with_build123d(tmp_path):
-    printed = run("build123d_clip.py", tmp_path)
-    assert "clip width=50 height=25: 26.00 g" in printed
-    assert "faces: mount, seat" in printed
-    faces = {face.name: face for face in load_step(tmp_path / "clip.step").faces}
-    assert faces["seat"].area == pytest.approx(np.pi * 36e-6)

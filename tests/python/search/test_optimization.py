@@ -1,11 +1,12 @@
 """Searches as a whole: determinism, duplicates, stopping, what runs hold."""
 
-import random
+import sys
 
 import numpy as np
+import pymoo.algorithms.moo
 import pytest
 
-from codesign.errors import StudyError
+from codesign.errors import ExecutionError, StudyError
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import non_dominated
 from codesign.search.optimization import evaluate_designs, optimize, sweep
@@ -13,38 +14,29 @@ from codesign.search.registry import BUILT_IN
 from codesign.search.sampling import RandomSearch, start_points, sub_grid
 from codesign.search.settings import Settings
 from codesign.storage.runs import Run
-from fake_study import FakeStudy, study
+from evolution_checks import WITH_NUMBA, check_evolution, tell_all
+from fake_study import study
 
 
 def identities(run: Run) -> list[dict]:
     return [record.identity() for record in run.search_records]
 
 
-def tell_all(search, space: FakeStudy, count: int, batch: int) -> list[tuple[int, ...]]:
-    """Runs a search without workers or store."""
-    asked: list[tuple[int, ...]] = []
-    while len(asked) < count and (grids := search.ask(batch)):
-        asked += grids
-        search.tell(grids, [space.evaluate(space.space.from_indices(grid)) for grid in grids])
-    return asked
-
-
-@pytest.mark.parametrize("algorithm", sorted(set(BUILT_IN) - {"random", "listed", "surrogate"}))
+@pytest.mark.parametrize("algorithm", sorted(set(BUILT_IN) - {"random", "listed", "surrogate"} - WITH_NUMBA))
 @pytest.mark.parametrize("batch", [12, 1])
 def test_evolution_is_deterministic_and_never_asks_twice(algorithm: str, batch: int) -> None:
-    if algorithm.startswith("age"):
-        pytest.importorskip("numba")
+    check_evolution(algorithm, batch)
+
+
+@pytest.mark.parametrize("algorithm", sorted(WITH_NUMBA))
+def test_a_search_names_the_package_that_it_lacks(algorithm: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("age", "age2"):
+        monkeypatch.delitem(sys.modules, f"pymoo.algorithms.moo.{module}", raising=False)
+        monkeypatch.delattr(pymoo.algorithms.moo, module, raising=False)
+    monkeypatch.setitem(sys.modules, "numba", None)
     fake = study()
-    settings = Settings(algorithm, population=12, seed=3)
-    runs = []
-    for _ in range(2):
-        search = settings.search(fake.space, fake.objectives)
-        runs.append(tell_all(search, fake, 120, batch))
-        np.random.seed(len(runs))  # noqa: NPY002 - the global generator must not matter
-        random.seed(len(runs))
-    assert runs[0] == runs[1]
-    assert len(set(runs[0])) == len(runs[0]) >= 120
-    assert len(search.population()) == 12
+    with pytest.raises(ExecutionError, match=rf"{algorithm} needs the package numba \(pip install 'codesign\[age\]'\)"):
+        Settings(algorithm, population=12).search(fake.space, fake.objectives)
 
 
 def test_another_seed_gives_another_search() -> None:

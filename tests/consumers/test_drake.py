@@ -3,13 +3,12 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from pydrake.math import RigidTransform
+from pydrake.multibody import parsing
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
+from pydrake.systems.framework import DiagramBuilder
 
 from exported_robots import ORIGINAL, Exported, export_robot
-
-parsing = pytest.importorskip("pydrake.multibody.parsing", reason="Drake is in the extra 'consumers'")
-from pydrake.math import RigidTransform  # noqa: E402
-from pydrake.multibody.plant import AddMultibodyPlantSceneGraph  # noqa: E402
-from pydrake.systems.framework import DiagramBuilder  # noqa: E402
 
 
 @pytest.fixture(scope="module", params=ORIGINAL)
