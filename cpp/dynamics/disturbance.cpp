@@ -1,5 +1,6 @@
 #include "dynamics/disturbance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace codesign::dynamics {
@@ -11,6 +12,9 @@ constexpr std::uint64_t kGustStream = 0x6775737473ULL;
 constexpr std::uint64_t kMassStream = 0x6d6173736573ULL;
 constexpr std::uint64_t kThrustStream = 0x746872757374ULL;
 
+constexpr double kNodesPerTime = 20.0;
+constexpr double kShortestInterval = 1e-3;  // [s]
+
 RandomStream stream(std::uint64_t seed, std::uint64_t purpose) {
   RandomStream mixed(seed);
   return RandomStream(mixed.next() ^ purpose);
@@ -20,20 +24,31 @@ RandomStream stream(std::uint64_t seed, std::uint64_t purpose) {
 
 Gusts::Gusts(const FlightSettings& settings)
     : mean_(settings.disturbances.wind_force),
-      deviation_(settings.disturbances.gust_deviation),
-      state_(Eigen::Vector3d::Zero()),
-      memory_(std::exp(-settings.step / settings.disturbances.gust_time)),
+      interval_(std::max(settings.disturbances.gust_time / kNodesPerTime, kShortestInterval)),
+      memory_(std::exp(-interval_ / settings.disturbances.gust_time)),
       drive_(std::sqrt(1.0 - memory_ * memory_)),
-      calm_(deviation_.isZero(0.0)),
+      calm_(settings.disturbances.gust_deviation.isZero(0.0)),
       random_(stream(settings.disturbances.seed, kGustStream)) {
-  for (double& x : state_) x = random_.normal();
+  deviation_ = std::sqrt(3.0 / (2.0 + memory_)) * settings.disturbances.gust_deviation;
+  last_ = draw();
+  next_ = memory_ * last_ + drive_ * draw();
 }
 
-Eigen::Vector3d Gusts::next() {
+Eigen::Vector3d Gusts::draw() {
+  Eigen::Vector3d x;
+  for (double& value : x) value = random_.normal();
+  return x;
+}
+
+Eigen::Vector3d Gusts::at(double time) {
   if (calm_) return mean_;
-  const Eigen::Vector3d force = mean_ + deviation_.cwiseProduct(state_);
-  for (double& x : state_) x = memory_ * x + drive_ * random_.normal();
-  return force;
+  const double nodes = time / interval_;
+  for (; static_cast<double>(node_ + 1) <= nodes; ++node_) {
+    last_ = next_;
+    next_ = memory_ * last_ + drive_ * draw();
+  }
+  const double share = nodes - static_cast<double>(node_);
+  return mean_ + deviation_.cwiseProduct(last_ + share * (next_ - last_));
 }
 
 Eigen::VectorXd body_mass_scales(const Disturbances& disturbances, int bodies) {

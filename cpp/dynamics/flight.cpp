@@ -42,6 +42,7 @@ class Flight {
 
   const Model& model_;
   const FlightSettings& settings_;
+  double torque_period_;
   bool hovers_;
   RobotState state_;
   RobotTerms terms_;
@@ -75,6 +76,7 @@ class Flight {
 Flight::Flight(const Model& model, const FlightSettings& settings, const FlightStart& start)
     : model_(model),
       settings_(settings),
+      torque_period_(settings.step / settings.torque_updates),
       hovers_(start.hovers),
       state_(start.state),
       terms_(model, settings.actuators, settings.rotor_inertia),
@@ -107,9 +109,9 @@ Flight::Flight(const Model& model, const FlightSettings& settings, const FlightS
 // the torque loop updates them.
 FailureReason Flight::advance_plant(int k) {
   if (k == 0 && !settings_.initial_free_fall) return FailureReason::kNotFailed;
-  inputs_.base_force = gusts_.next();
   // The step before sample k is under the pulses that act at its start.
-  const PulseSum pulse = pulses_at(settings_.pulses, std::max(k - 1, 0) * settings_.step);
+  const double start = std::max(k - 1, 0) * settings_.step;
+  const PulseSum pulse = pulses_at(settings_.pulses, start);
   inputs_.com_force = pulse.force;
   inputs_.base_moment = pulse.moment;
   for (int i = 0; i < settings_.torque_updates; ++i) {
@@ -119,6 +121,7 @@ FailureReason Flight::advance_plant(int k) {
       const FailureReason reason = k > 0 ? update_torque() : FailureReason::kNotFailed;
       if (reason != FailureReason::kNotFailed) return reason;
     }
+    inputs_.base_force = gusts_.at(k > 0 ? start + (i + 0.5) * torque_period_ : start);
     if (!plant_.advance(terms_, joint_space_, inputs_, state_)) return FailureReason::kSingularMass;
   }
   return plant_.fuel_left() < 0.0 ? FailureReason::kNoFuel : FailureReason::kNotFailed;

@@ -133,8 +133,8 @@ struct Tank {
   double consumption = 0.0;                            // [kg/(N s)] of the actuators' thrust
 };
 
-// What the controller does not know. Gusts are a first-order Gauss-Markov process per world axis;
-// every random number comes from the seed through the generator of disturbance.hpp.
+// What the controller does not know. Gusts are a first-order Gauss-Markov process per world axis that
+// depends on no step; every random number comes from the seed (disturbance.hpp).
 struct Disturbances {
   Eigen::Vector3d wind_force = Eigen::Vector3d::Zero();      // on the base's origin, world axes [N]
   Eigen::Vector3d wind_velocity = Eigen::Vector3d::Zero();   // of the air, world axes [m/s]

@@ -107,10 +107,10 @@ FailureReason PredictiveFlight::check_limits(const Vector3d& com_error, double a
 
 // The plant steps of one period, measured one by one.
 FailureReason PredictiveFlight::advance(int k) {
-  inputs_.base_force = gusts_.next();
   for (int i = 0; i < plant_steps_; ++i) {
     const double time = k * settings_.step + i * plant_step_;
     const PulseSum pulse = pulses_at(settings_.pulses, time);
+    inputs_.base_force = gusts_.at(time + 0.5 * plant_step_);
     inputs_.com_force = pulse.force;
     inputs_.base_moment = pulse.moment;
     if (!plant_.evaluate(state_, jets_, inputs_)) return FailureReason::kNotFinite;

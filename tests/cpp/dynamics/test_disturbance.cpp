@@ -39,14 +39,15 @@ TEST(Gusts, HaveTheAskedDeviationAndCorrelationTime) {
   settings.disturbances.gust_deviation = Eigen::Vector3d(4.0, 2.0, 0.0);
   settings.disturbances.gust_time = 0.5;
   Gusts gusts(settings);
-  const int n = 400000, lag = 62;  // 0.496 s
+  const int n = 400000, lag = 62;  // 0.5 s
+  const double step = 0.5 / lag;
   std::vector<double> x(n);
   double mean = 0.0;
-  for (double& value : x) {
-    const Eigen::Vector3d force = gusts.next();
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Vector3d force = gusts.at(i * step);
     EXPECT_EQ(force.z(), 0.0);
-    value = force.x();
-    mean += value / n;
+    x[i] = force.x();
+    mean += x[i] / n;
   }
   double variance = 0.0, covariance = 0.0;
   for (int i = 0; i + lag < n; ++i) {
@@ -56,6 +57,34 @@ TEST(Gusts, HaveTheAskedDeviationAndCorrelationTime) {
   EXPECT_NEAR(mean, 10.0, 0.2);
   EXPECT_NEAR(std::sqrt(variance), 4.0, 0.15);
   EXPECT_NEAR(covariance / variance, std::exp(-1.0), 0.04);
+}
+
+TEST(Gusts, AreTheSameAtAnyStep) {
+  FlightSettings settings = testing::settings();
+  settings.disturbances.gust_deviation.setConstant(5.0);
+  settings.disturbances.seed = 3;
+  const double step = settings.step;
+  Gusts whole(settings);
+  settings.step = 0.5 * step;
+  Gusts half(settings);
+  for (int k = 0; k < 4000; ++k) {
+    const Eigen::Vector3d first = half.at(2 * k * settings.step);
+    EXPECT_EQ(first, whole.at(k * step));
+    half.at((2 * k + 1) * settings.step);
+  }
+}
+
+// Continuous: over a step far below the interval of the nodes the force moves in proportion.
+TEST(Gusts, AreLinesBetweenTheirNodes) {
+  FlightSettings settings = testing::settings();
+  settings.disturbances.gust_deviation.setConstant(5.0);
+  Gusts gusts(settings);  // nodes every 0.05 s
+  for (int node = 0; node < 100; ++node) {
+    const double start = 0.05 * node;
+    const Eigen::Vector3d a = gusts.at(start + 0.005), b = gusts.at(start + 0.025);
+    const Eigen::Vector3d c = gusts.at(start + 0.045);
+    EXPECT_LT((a + c - 2.0 * b).norm(), 1e-11);
+  }
 }
 
 TEST(Disturbances, AreDrawnFromTheSeedAlone) {

@@ -129,6 +129,18 @@ def test_seeds_of_a_batch_are_the_flights_alone() -> None:
         np.testing.assert_array_equal(log.velocity, dyn.simulate_flight(robot(ORIGINAL), settings).velocity)
 
 
+def test_a_flight_at_half_its_steps_meets_the_same_gusts() -> None:
+    settings = hovering(5.0)
+    settings.duration, settings.trajectory = 4.0, []
+    settings.disturbances = dyn.Disturbances(gust_deviation=np.full(3, 5.0), seed=3)
+    whole = dyn.simulate_flight(robot(ORIGINAL), settings)
+    settings.step *= 0.5
+    half = dyn.simulate_flight(robot(ORIGINAL), settings)
+    assert np.abs(whole.wind - half.wind[::2]).max() < 0.3  # each is of the torque period before its sample
+    errors = [log.momentum_error[:, :3] for log in (whole, half)]
+    assert np.sqrt((errors[0] ** 2).mean()) == pytest.approx(np.sqrt((errors[1] ** 2).mean()), rel=0.03)
+
+
 def test_what_a_tank_holds_ends_the_flight() -> None:
     settings = hovering(5.0)
     settings.duration, settings.trajectory = 4.0, []
