@@ -33,7 +33,7 @@ def saturation(log: dyn.FlightLog, flight: FlightConfig) -> dict[str, float]:
 
     thrust_rate_share: mean commanded thrust rate over its limit. thrust_at_most, thrust_at_least, torque_at_limit,
     joint_at_limit: samples in which any of them is within 1 % of its range of that end; joints only where the study
-    gives ranges.
+    gives ranges, and not those that start at an end: straight knees rest there.
     """
     jets, limits = flight.jets, flight.limits
     count = len(jets.frames)
@@ -51,14 +51,13 @@ def saturation(log: dyn.FlightLog, flight: FlightConfig) -> dict[str, float]:
     near_thrust, near_joint = NEAR * (most - least), np.where(np.isfinite(high - low), NEAR * (high - low), 0.0)
     torque = np.inf if limits is None else limits.torque_n_m
     with np.errstate(invalid="ignore"):  # the last sample of a lost flight may not be finite
+        joint_at_end = (log.joint_positions >= high - near_joint) | (log.joint_positions <= low + near_joint)
         return {
             "thrust_rate_share": _mean(np.abs(log.thrust_rate_command) / rate),
             "thrust_at_most": _any(log.thrust >= most - near_thrust),
             "thrust_at_least": _any(log.thrust <= least + near_thrust),
             "torque_at_limit": _any(np.abs(log.torque) >= (1.0 - NEAR) * torque),
-            "joint_at_limit": _any(
-                (log.joint_positions >= high - near_joint) | (log.joint_positions <= low + near_joint)
-            ),
+            "joint_at_limit": _any(joint_at_end & ~joint_at_end[:1]),
         }
 
 

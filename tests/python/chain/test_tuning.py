@@ -1,6 +1,7 @@
 """Saturation figures, the sentence that explains a loss, and gains that are tried in flights."""
 
 import json
+from types import SimpleNamespace
 
 import msgspec
 import numpy as np
@@ -44,6 +45,19 @@ def test_shares_are_those_of_the_histories(hexarotor):
     narrow = msgspec.structs.replace(flight.jets, max_thrust_n=float(np.median(log.thrust.max(axis=1))))
     half = saturation(log, msgspec.structs.replace(flight, jets=narrow))
     assert half["thrust_at_most"] == pytest.approx(0.5, abs=0.2)
+
+
+def test_joints_that_rest_at_an_end_do_not_count_as_driven_there():
+    flight = load_study("gimbal_quad").config.flight
+    (group,) = flight.joint_groups
+    ranges = [(-90.0, 0.0)] * len(group.joints)
+    flight = msgspec.structs.replace(flight, joint_groups=[msgspec.structs.replace(group, ranges_deg=ranges)])
+    still = np.full((10, len(flight.jets.frames)), 5.0)
+    joints = np.zeros((10, len(group.joints)))  # at their upper ends
+    log = SimpleNamespace(thrust=still, thrust_rate_command=0.0 * still, torque=0.0 * joints, joint_positions=joints)
+    assert saturation(log, flight)["joint_at_limit"] == 0.0
+    joints[:5, 0] = -0.5
+    assert saturation(log, flight)["joint_at_limit"] == 0.5
 
 
 def test_gains_of_a_heavy_robot_on_a_light_one_are_named(tmp_path):
