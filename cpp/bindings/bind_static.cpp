@@ -70,6 +70,26 @@ void bind_selection(py::module_& m) {
   m.def("face_area", &face_area, "mesh"_a, "triangles"_a, "Area of curved boundary faces, m2.");
 }
 
+// The class of a kind of load: a constructor that takes all members, and the members.
+template <typename Kind>
+void bind_load(py::module_& m) {
+  std::apply(
+      [&](auto... member) {
+        py::class_<Kind> kind(m, Kind::kName);
+        kind.def(py::init([](typename decltype(member)::Type... value) {
+                   return Kind{std::move(value)...};
+                 }),
+                 py::arg(member.name)...);
+        (kind.def_readonly(member.name, member.place, member.unit), ...);
+      },
+      Kind::kMembers);
+}
+
+template <typename... Kinds>
+void bind_loads(py::module_& m, const std::variant<Kinds...>*) {
+  (bind_load<Kinds>(m), ...);
+}
+
 void bind_supports_and_loads(py::module_& m) {
   py::class_<Support>(m, "Support")
       .def(py::init<Selection, std::array<bool, 3>, Points, bool>(), "where"_a,
@@ -78,25 +98,9 @@ void bind_supports_and_loads(py::module_& m) {
       .def_readonly("where", &Support::where)
       .def_readonly("fixed", &Support::fixed)
       .def_readonly("symmetry", &Support::symmetry);
-  py::class_<Force>(m, "Force").def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "force"_a);
-  py::class_<Traction>(m, "Traction")
-      .def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "traction"_a);
-  py::class_<Pressure>(m, "Pressure").def(py::init<Selection, double>(), "where"_a, "pressure"_a);
-  py::class_<BearingLoad>(m, "BearingLoad")
-      .def(py::init<Selection, Eigen::Vector3d>(), "where"_a, "force"_a);
   py::class_<Disc>(m, "Disc").def(py::init<Eigen::Vector3d, Eigen::Vector3d, double>(), "center"_a,
                                   "axis"_a, "radius"_a);
-  py::class_<AffineTraction>(m, "AffineTraction")
-      .def(py::init<Selection, Eigen::Vector3d, Eigen::Vector3d, Eigen::Vector3d,
-                    std::optional<Disc>>(),
-           "where"_a, "force"_a, "point"_a, "moment"_a, "region"_a = std::nullopt)
-      .def_readonly("where", &AffineTraction::where)
-      .def_readonly("region", &AffineTraction::region);
-  py::class_<Acceleration>(m, "Acceleration")
-      .def(py::init<Eigen::Vector3d, Eigen::Matrix3d, Eigen::Vector3d>(), "acceleration"_a,
-           "gradient"_a = Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
-           "point"_a = Eigen::Vector3d(Eigen::Vector3d::Zero()));
-  py::class_<BodyForce>(m, "BodyForce").def(py::init<Points>(), "force"_a);
+  bind_loads(m, static_cast<const Load*>(nullptr));
   m.def("load_vector", &load_vector, "mesh"_a, "material"_a, "loads"_a,
         py::call_guard<py::gil_scoped_release>());
 }

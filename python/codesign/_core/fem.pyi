@@ -440,24 +440,6 @@ class Support:
     @property
     def where(self) -> Selection: ...
 
-class Force:
-    def __init__(
-        self, where: Selection, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
-    ) -> None: ...
-
-class Traction:
-    def __init__(
-        self, where: Selection, traction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
-    ) -> None: ...
-
-class Pressure:
-    def __init__(self, where: Selection, pressure: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-
-class BearingLoad:
-    def __init__(
-        self, where: Selection, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
-    ) -> None: ...
-
 class Disc:
     def __init__(
         self,
@@ -466,6 +448,52 @@ class Disc:
         radius: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
 
+class Force:
+    def __init__(
+        self, where: Selection, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> None: ...
+    @property
+    def force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        N
+        """
+    @property
+    def where(self) -> Selection: ...
+
+class Traction:
+    def __init__(
+        self, where: Selection, traction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> None: ...
+    @property
+    def traction(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        Pa
+        """
+    @property
+    def where(self) -> Selection: ...
+
+class Pressure:
+    def __init__(self, where: Selection, pressure: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def pressure(self) -> float:
+        """
+        Pa
+        """
+    @property
+    def where(self) -> Selection: ...
+
+class BearingLoad:
+    def __init__(
+        self, where: Selection, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> None: ...
+    @property
+    def force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        N
+        """
+    @property
+    def where(self) -> Selection: ...
+
 class AffineTraction:
     def __init__(
         self,
@@ -473,8 +501,23 @@ class AffineTraction:
         force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         moment: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
-        region: Disc | None = None,
+        region: Disc | None,
     ) -> None: ...
+    @property
+    def force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        N
+        """
+    @property
+    def moment(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        N m
+        """
+    @property
+    def point(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        m
+        """
     @property
     def region(self) -> Disc | None: ...
     @property
@@ -484,12 +527,32 @@ class Acceleration:
     def __init__(
         self,
         acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
-        gradient: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"] = ...,
-        point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"] = ...,
+        gradient: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"],
+        point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
     ) -> None: ...
+    @property
+    def acceleration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        m/s²
+        """
+    @property
+    def gradient(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        1/s²
+        """
+    @property
+    def point(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        m
+        """
 
 class BodyForce:
     def __init__(self, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"]) -> None: ...
+    @property
+    def force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        N/m³
+        """
 
 class RemoteMass:
     """

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from codesign import fem
-from codesign.parts.load_case import (
-    CarriedMass,
-    CaseSettings,
-    FlownCase,
-    InterfaceForce,
-    PartLoad,
-    PressedFace,
-    PushedFace,
-)
-from codesign.study.config import LoadConfig, PartConfig, StudyConfig
-from codesign.units import MEGA, MILLIMETER
+from codesign.parts.load_case import CarriedMass, CaseSettings, FlownCase
+from codesign.study.config import PartConfig, StudyConfig
+from codesign.study.load_config import part_load
+from codesign.units import MILLIMETER
 
 
 def case_settings(part: PartConfig, config: StudyConfig) -> tuple[CaseSettings, ...]:
@@ -54,25 +46,3 @@ def asked_of(part: PartConfig, config: StudyConfig) -> dict[str, float]:
 def _otherwise(part: PartConfig, config: StudyConfig) -> float | None:
     own = any(case.safety_factor_min is not None for case in part.load_cases)
     return config.constraints.safety_factor_min if own else None
-
-
-def part_load(load: LoadConfig) -> PartLoad:
-    """One load in SI units; total forces on faces are the part's to interpret."""
-    if load.pressing_n is not None:
-        return PressedFace(load.face, load.pressing_n)
-    if load.pressure_mpa is not None:
-        return fem.Pressure(load.face, load.pressure_mpa * MEGA)
-    if load.traction_mpa is not None:
-        return fem.Traction(load.face, tuple(x * MEGA for x in load.traction_mpa))
-    if load.bearing_n is not None:
-        return fem.BearingLoad(load.face, load.bearing_n)
-    if load.acceleration_m_s2 is not None:
-        return fem.Acceleration(load.acceleration_m_s2)
-    force = load.force_n or (0.0, 0.0, 0.0)
-    x, y, z = (MILLIMETER * value for value in load.point_mm or (0.0, 0.0, 0.0))
-    moment = load.moment_n_m or (0.0, 0.0, 0.0)
-    if load.interface:
-        return InterfaceForce(load.face, load.interface, force, (x, y, z), moment)
-    if load.point_mm is None and load.moment_n_m is None:
-        return PushedFace(load.face, force)
-    return fem.AffineTraction(load.face, force, (x, y, z), moment)

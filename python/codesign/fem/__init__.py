@@ -18,22 +18,13 @@ from codesign._core.fem import (
     tetrahedralize,
 )
 from codesign.errors import ModelError
+from codesign.fem import loads
+from codesign.fem.loads import *  # noqa: F403 (its list of kinds)
 from codesign.fem.model import (
-    Acceleration,
-    AffineTraction,
-    BearingLoad,
-    BodyForce,
-    Disc,
-    Force,
-    Load,
-    LoadCase,
     Material,
-    Pressure,
-    RemoteMass,
     Selection,
     Support,
     TetMesh,
-    Traction,
     faces_in_box,
     faces_near,
     faces_with_normal,
@@ -55,23 +46,13 @@ from codesign.fem.static import (
 )
 
 __all__ = [
-    "Acceleration",
-    "AffineTraction",
-    "BearingLoad",
-    "BodyForce",
     "Buckling",
-    "Disc",
-    "Force",
-    "Load",
-    "LoadCase",
     "MassProperties",
     "Material",
     "MeshQuality",
     "MeshReport",
     "ModelError",
     "Modes",
-    "Pressure",
-    "RemoteMass",
     "RepairReport",
     "Selection",
     "SizeField",
@@ -82,7 +63,6 @@ __all__ = [
     "Support",
     "SurfaceMesh",
     "TetMesh",
-    "Traction",
     "UnitResponses",
     "buckling_factors",
     "check_surface",
@@ -104,3 +84,4 @@ __all__ = [
     "solve_static",
     "tetrahedralize",
 ]
+__all__ += loads.__all__

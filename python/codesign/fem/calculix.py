@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from codesign._core import fem as _core
-from codesign.fem.model import Load, Material, Support, TetMesh, native_loads, native_supports, resolve
+from codesign.fem.loads import Load, native_loads
+from codesign.fem.model import Material, Support, TetMesh, native_supports, resolve
 from codesign.files import replacing
 
 PER_LINE = 16  # entries

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from codesign._core import fem as _core
 from codesign._core.fem import StaticResult as StaticResult
 from codesign._core.fem import UnitResponses as UnitResponses
-from codesign.fem.model import Load, Material, RemoteMass, Support, TetMesh, native_loads, native_supports
+from codesign.fem.loads import Load, RemoteMass, native_loads
+from codesign.fem.model import Material, Support, TetMesh, native_supports
 
 Solver = Literal["automatic", "direct", "iterative"]
 Exclusion = Literal["local", "published"]

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from codesign import _core, fem
 from codesign.errors import ModelError, StudyError
-from codesign.fem.model import native_loads, native_supports
+from codesign.fem.loads import native_loads
+from codesign.fem.model import native_supports
 from codesign.fem.static import Exclusion
 from codesign.names import nearest
 from codesign.units import MEBIBYTE

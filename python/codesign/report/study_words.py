@@ -8,8 +8,10 @@ from dataclasses import replace
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import PartWords
 from codesign.report.words import listed, plural
-from codesign.study.config import LoadCaseConfig, LoadConfig, PartConfig, StudyConfig
+from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
 from codesign.study.flight_config import JointGroupConfig
+from codesign.study.load_config import LOAD_KINDS, LoadConfig
+from codesign.study.sections import Vector3
 
 TIMES = {0.5: "half", 1.0: "once", 2.0: "twice"}
 
@@ -51,7 +53,7 @@ def _load_case(config: StudyConfig, part: PartConfig) -> str:
 
 
 def _case(case: LoadCaseConfig, named: bool) -> str:
-    loads = listed([_load(load) for load in case.loads] or [_flown(case)])
+    loads = listed([load_words(load) for load in case.loads] or [_flown(case)])
     asked = f", at least {case.safety_factor_min:g} times" if case.safety_factor_min is not None else ""
     return f"{case.name}: {loads}{asked}" if named else loads
 
@@ -61,17 +63,20 @@ def _flown(case: LoadCaseConfig) -> str:
     return f"loads of the flight at every sample, of what hangs at {seats}, and the part's own weight and inertia"
 
 
-def _load(load: LoadConfig) -> str:
-    value = getattr(load, load.kind)
-    number = f"({', '.join(f'{x:g}' for x in value)})" if isinstance(value, tuple) else f"{value:g}"
-    if load.kind == "acceleration_m_s2":
-        return f"acceleration {number}\u202fm/s²"
-    unit = "MPa" if load.kind.endswith("_mpa") else "N"
-    verb = {"pressing_n": "pressing on", "pressure_mpa": "pressure on"}.get(load.kind, "on")
+def load_words(load: LoadConfig) -> str:
+    """A load with its numbers and units."""
+    kind, value = LOAD_KINDS[load.kind], getattr(load, load.kind)
+    number = f"{_vector(value)}\u202f{kind.unit}" if isinstance(value, tuple) else f"{value:g}\u202f{kind.unit}"
+    if not kind.on_face:
+        return f"{kind.verb} {number}"
     axes = f" in axes of {load.interface}" if load.interface else ""
-    remote = f" at ({', '.join(f'{x:g}' for x in load.point_mm)})\u202fmm" if load.point_mm else ""
-    moment = f" with ({', '.join(f'{x:g}' for x in load.moment_n_m)})\u202fN\u202fm" if load.moment_n_m else ""
-    return f"{number}\u202f{unit}{moment}{remote}{axes} {verb} face {load.face}"
+    remote = f" at {_vector(load.point_mm)}\u202fmm" if load.point_mm else ""
+    moment = f" with {_vector(load.moment_n_m)}\u202fN\u202fm" if load.force_n and load.moment_n_m else ""
+    return f"{number}{moment}{remote}{axes} {kind.verb} face {load.face}"
+
+
+def _vector(value: Vector3) -> str:
+    return f"({', '.join(f'{x:g}' for x in value)})"
 
 
 def _material(config: StudyConfig, part: PartConfig) -> str:

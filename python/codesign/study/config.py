@@ -11,6 +11,7 @@ from codesign.robot.assembly import PartPlacement
 from codesign.robot.changes import RobotChange
 from codesign.robot.clearance import InterferenceSettings
 from codesign.study.flight_config import FlightConfig, TrajectoryConfig
+from codesign.study.load_config import LoadConfig
 from codesign.study.sections import ChoiceName, Name, NonNegative, Positive, Probability, Section, Seed, Vector3
 
 ONLY_CASE = "load"  # name of the load case of a part that has one
@@ -67,56 +68,6 @@ class MaterialConfig(Section, frozen=True, kw_only=True):
     ultimate_strength_mpa: Positive | None = None
     fatigue_strength_mpa: Positive | None = None
     fatigue_cycles: Positive | None = None
-
-
-class LoadConfig(Section, frozen=True, kw_only=True):
-    """One load of a part: one kind of it.
-
-    pressing_n: total force on a face, against its mean outward normal. force_n: total force on a face, a vector in part
-    axes, for round faces, whose normals cancel, say. Both spread uniformly. With point_mm or moment_n_m the force acts
-    at that point (of part axes) and has that moment about it: a remote force, affine over the face. interface: point,
-    force and moment are in the axes of this interface of the part, and move with it. pressure_mpa: against the outward
-    normal everywhere. bearing_n: total force by pressure alone, as a pin presses on a bore. moment_n_m alone: a moment
-    on a face. traction_mpa: force per area, the same everywhere. acceleration_m_s2: a field
-    like gravity on the whole part, without a face.
-    """
-
-    face: str = ""
-    pressing_n: float | None = None
-    force_n: Vector3 | None = None
-    interface: str = ""
-    point_mm: Vector3 | None = None
-    moment_n_m: Vector3 | None = None
-    bearing_n: Vector3 | None = None
-    pressure_mpa: float | None = None
-    traction_mpa: Vector3 | None = None
-    acceleration_m_s2: Vector3 | None = None
-
-    @property
-    def kind(self) -> str:
-        """The key that says what the load is."""
-        return next(name for name in LOAD_KINDS if getattr(self, name) is not None)
-
-    def __post_init__(self) -> None:
-        given = [name for name in LOAD_KINDS if getattr(self, name) is not None]
-        if "force_n" in given and "moment_n_m" in given:
-            given.remove("moment_n_m")
-        if len(given) != 1:
-            said = " and ".join(given) or "nothing"
-            raise ValueError(f"a load needs exactly one of {', '.join(LOAD_KINDS)}; given {said}")
-        value = getattr(self, given[0])
-        remote = self.point_mm is not None or self.interface
-        if remote and self.force_n is None and self.moment_n_m is None:
-            raise ValueError("point_mm and interface belong to force_n and moment_n_m")
-        if not any(value if isinstance(value, tuple) else (value,)) and not any(self.moment_n_m or ()):
-            raise ValueError(f"{given[0]} of a load is zero")
-        if bool(self.face) == (given[0] == "acceleration_m_s2"):
-            raise ValueError("a load names its face, but for acceleration_m_s2, which acts on the whole part")
-
-
-LOAD_KINDS = (
-    "pressing_n", "force_n", "moment_n_m", "bearing_n", "pressure_mpa", "traction_mpa", "acceleration_m_s2",
-)  # fmt: skip
 
 
 class MassOnFaceConfig(Section, frozen=True, kw_only=True):

@@ -6,12 +6,12 @@ import pytest
 from codesign import _core, fem
 from codesign.chain.chain import stress_settings
 from codesign.chain.judge import limits
-from codesign.chain.loads import case_settings, part_load
+from codesign.chain.loads import case_settings
 from codesign.chain.study import load_study
 from codesign.errors import StudyError
 from codesign.parts.load_case import PressedFace, PushedFace, part_case
 from codesign.study import new_study
-from codesign.study.config import LoadConfig
+from codesign.study.load_config import LoadConfig, part_load
 
 LOADS = 'loads = [{ face = "seat", pressing_n = 250.0 }]'
 THRUST = '{ name = "thrust", loads = [{ face = "seat", pressing_n = 250.0 }] }'

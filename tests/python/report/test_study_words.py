@@ -10,7 +10,8 @@ import pytest
 import codesign
 from codesign.chain.study import load_study
 from codesign.report.details import flight_history
-from codesign.report.study_words import flight_words, objective_quantities, part_words
+from codesign.report.study_words import flight_words, load_words, objective_quantities, part_words
+from codesign.study.load_config import LoadConfig
 
 PACKAGE = Path(codesign.__file__).parent
 ROBOT_WORDS = (
@@ -59,6 +60,22 @@ def test_momentum_says_what_is_summed():
 def test_a_load_case_names_load_face_and_support():
     load = part_words(load_study("gimbal_quad").config)["strut"].load
     assert load.startswith("250\u202fN pressing on face seat, face mount held")
+
+
+@pytest.mark.parametrize(
+    ("load", "said"),
+    [
+        ({"face": "seat", "pressing_n": 250.0}, "250\u202fN pressing on face seat"),
+        ({"face": "seat", "moment_n_m": (0.0, 0.0, 2.0)}, "(0, 0, 2)\u202fN\u202fm on face seat"),
+        (
+            {"face": "seat", "force_n": (1.0, 0.0, 0.0), "moment_n_m": (0.0, 0.0, 2.0), "point_mm": (5.0, 0.0, 0.0)},
+            "(1, 0, 0)\u202fN with (0, 0, 2)\u202fN\u202fm at (5, 0, 0)\u202fmm on face seat",
+        ),
+        ({"acceleration_m_s2": (0.0, 0.0, -9.81)}, "acceleration (0, 0, -9.81)\u202fm/s²"),
+    ],
+)
+def test_every_kind_of_load_has_its_unit(load, said):
+    assert load_words(LoadConfig(**load)) == said
 
 
 def test_a_density_that_is_not_the_materials_is_said():
