@@ -19,9 +19,7 @@ from codesign.cli.console import err, out, print_json
 from codesign.cli.options import INTERRUPTED
 from codesign.errors import CodesignError, FileError, LibraryError
 
-app = typer.Typer(
-    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="markdown"
-)
+app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="markdown")
 for group in (design, run, study, stress, doctor):
     app.add_typer(group.commands)
 

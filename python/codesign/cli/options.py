@@ -10,8 +10,29 @@ import typer
 from codesign.errors import DesignError
 from codesign.problem.design_space import DesignValue
 
-StudyOption = Annotated[str, typer.Option("--study", "-s", help="A shipped study's name or the path of a study.toml.")]
-SetOption = Annotated[list[str], typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.")]
+
+def complete_study(incomplete: str) -> list[str]:
+    """Names of shipped studies that begin so, for the shell."""
+    from codesign.study import shipped_studies
+
+    return [name for name in shipped_studies() if name.startswith(incomplete)]
+
+
+def complete_assignment(context: typer.Context, incomplete: str) -> list[str]:
+    """Design variables that begin so, of the study that the line names, for the shell."""
+    from codesign.study import StudyData, load
+
+    study = load(context.params.get("study") or DEFAULT_STUDY, StudyData)
+    return [f"{name}=" for name in study.space.names if f"{name}=".startswith(incomplete)]
+
+
+STUDY_HELP = "A shipped study's name or the path of a study.toml."
+StudyOption = Annotated[str, typer.Option("--study", "-s", help=STUDY_HELP, autocompletion=complete_study)]
+StudyArgument = Annotated[str, typer.Argument(help=STUDY_HELP, autocompletion=complete_study)]
+SetOption = Annotated[
+    list[str],
+    typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.", autocompletion=complete_assignment),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 NoCacheOption = Annotated[bool, typer.Option("--no-cache", help="Compute everything again.")]
 TrajectoryOption = Annotated[str | None, typer.Option("--trajectory", "-t", help="A trajectory of the study.")]

@@ -1,6 +1,7 @@
 """The command line as a user meets it: exit codes, one JSON document, help with an example."""
 
 import json
+import os
 import subprocess
 import sys
 
@@ -24,6 +25,22 @@ def test_help_has_an_example(command):
     result = codesign(command, "--help")
     assert result.returncode == 0
     assert "Example" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("codesign eva", ["evaluate"]),
+        ("codesign evaluate --study gimb", ["gimbal_quad"]),
+        ("codesign check hexa", ["hexarotor"]),
+        ("codesign evaluate --study hexarotor --set t", ["tilt=", "tube="]),
+    ],
+)
+def test_shells_complete_commands_studies_and_variables(line, offered):
+    request = {"_CODESIGN_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(line.split()) - 1)}
+    command = (sys.executable, "-c", "import sys; sys.argv[0] = 'codesign'; from codesign.cli.main import main; main()")
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=os.environ | request)
+    assert done.stdout.split() == offered
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from codesign.cli.console import out, print_json
-from codesign.cli.options import DEFAULT_STUDY, JsonOption, TrajectoryOption, parse_design
+from codesign.cli.options import DEFAULT_STUDY, JsonOption, StudyArgument, TrajectoryOption, parse_design
 from codesign.errors import StudyError
 
 commands = typer.Typer()
@@ -50,7 +50,7 @@ def _names(given: str) -> list[str]:
 
 @commands.command(epilog="Example: `codesign check my_study --time`")
 def check(
-    study: Annotated[str, typer.Argument(help="A shipped study's name or the path of a study.toml.")] = DEFAULT_STUDY,
+    study: StudyArgument = DEFAULT_STUDY,
     time: Annotated[bool, typer.Option("--time", help="Evaluate one design, too: what an evaluation costs.")] = False,
     as_json: JsonOption = False,
 ) -> int:
@@ -84,7 +84,7 @@ def check(
 
 @commands.command(epilog="Example: `codesign tune my_study`")
 def tune(
-    study: Annotated[str, typer.Argument(help="A shipped study's name or the path of a study.toml.")] = DEFAULT_STUDY,
+    study: StudyArgument = DEFAULT_STUDY,
     set_: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A design; default: the baseline.")
     ] = None,
