@@ -13,11 +13,11 @@ from codesign.cli.design import placed_components
 from codesign.cli.robot_files import flown_postures, write_urdf
 from codesign.robot.collisions import ignored_pairs
 from codesign.robot.description import RobotDescription
-from codesign.robot.drake_filters import NAMESPACE, urdf_collision_filters
-from codesign.robot.mjcf import mjcf_text
+from codesign.robot.formats.drake_filters import NAMESPACE, urdf_collision_filters
+from codesign.robot.formats.mjcf import mjcf_text
+from codesign.robot.formats.sdf import sdf_text
+from codesign.robot.formats.srdf import srdf_text
 from codesign.robot.package import with_obj_meshes
-from codesign.robot.sdf import sdf_text
-from codesign.robot.srdf import srdf_text
 
 ORIGINAL = {
     "ironcub_paper": {"angle": 15, "distance": 42, "offset": 80, "length": 108},

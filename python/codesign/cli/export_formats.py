@@ -9,7 +9,7 @@ from codesign.errors import ExportError, LibraryError
 from codesign.names import nearest
 
 CAD = ("stl", "step", "3mf", "glb", "pdf", "dxf")
-ROBOT = ("urdf", "mjcf", "sdf")
+ROBOT = ("urdf", "mjcf", "sdf", "ros2")
 LOG = ("csv", "parquet", "mcap")
 FORMATS = (*CAD, *ROBOT, *LOG, "vtu", "msh")
 DEFAULT = ("stl", "step", "3mf", "glb", "pdf", "urdf", "vtu")
@@ -27,6 +27,7 @@ UNITS = {
     "cad/*.pdf": ("mm; A3, first angle", ("pdf",)),
     "cad/*.dxf": ("mm; A3, first angle", ("dxf",)),
     "robot/*": ("m, kg, rad; meshes mm, scaled where they are named", ROBOT),
+    "ros2/*": ("m, kg, rad; meshes mm, scaled where they are named", ("ros2",)),
     "robot/flight.*": ("SI; the unit of each column in its name", LOG),
     "stress/*.vtu": ("m, Pa", ("vtu",)),
     "stress/*.msh": ("m", ("msh",)),

@@ -35,6 +35,7 @@ ROBOT_FILES = (
     (ROBOT, "robot.urdf", "links, joints, masses, meshes"),
     (("mjcf",), "robot.xml", "the same for MuJoCo, with jets as actuators and the start as keyframe"),
     (("sdf",), "robot.sdf", "the same for Gazebo and Drake, with jets as frames"),
+    (("ros2",), "../ros2", "package for ROS 2: `colcon build`, then `ros2 launch PACKAGE display.launch.py`"),
     (ROBOT, "robot.srdf", "start posture, collisions to be left out"),
     ((*ROBOT, *LOG), "robot.json", "jets with axes, limits and dynamics, start, controller"),
     (("csv",), "flight.csv", "the flight that the objectives are of"),

@@ -20,17 +20,18 @@ from codesign.geometry.mesh_files import obj_text
 from codesign.names import identifier
 from codesign.parts.component import Component
 from codesign.parts.part import EXPORT_RESOLUTION, Part
-from codesign.problem.design_space import value_text
+from codesign.problem.design_space import Design, value_text
 from codesign.problem.evaluation import Evaluation
 from codesign.robot.clearance import SLICES
 from codesign.robot.collisions import ignored_pairs
 from codesign.robot.description import RobotDescription
-from codesign.robot.drake_filters import NAMESPACE, urdf_collision_filters
+from codesign.robot.formats.drake_filters import NAMESPACE, urdf_collision_filters
+from codesign.robot.formats.mjcf import mjcf_text
+from codesign.robot.formats.ros2 import RosPackage, ros_name, write_ros2_package
+from codesign.robot.formats.sdf import sdf_text
+from codesign.robot.formats.srdf import srdf_text
 from codesign.robot.jets import flying_document
-from codesign.robot.mjcf import mjcf_text
 from codesign.robot.package import MeshWriter, with_obj_meshes, write_urdf_package
-from codesign.robot.sdf import sdf_text
-from codesign.robot.srdf import srdf_text
 from codesign.storage.flight_log import flown_columns, flown_metadata, write_csv, write_parquet
 from codesign.storage.flight_mcap import write_mcap
 from codesign.transforms import Matrix
@@ -53,8 +54,9 @@ def write_robot_files(
 ) -> None:
     """Writes what the formats ask for.
 
-    urdf: robot.urdf, robot.srdf and meshes, which come with mjcf and sdf, too. mjcf: robot.xml. sdf: robot.sdf. csv,
-    parquet, mcap: flight.*. With each robot.json: jets, start, controller.
+    urdf: robot.urdf, robot.srdf and meshes, which come with mjcf, sdf and ros2, too. mjcf: robot.xml. sdf: robot.sdf.
+    csv, parquet, mcap: flight.*. With each robot.json: jets, start, controller. ros2: a package in the folder `ros2`
+    beside.
 
     components: parts in their places and the links that they are. log: of the flight that the evaluation is of.
     """
@@ -67,7 +69,8 @@ def write_robot_files(
     folder.mkdir(exist_ok=True)
     if any(kind in formats for kind in ROBOT):
         robot = write_urdf(study, robot, components, folder, settings.limits if momentum_qp else None)
-        _write_models(robot, settings, log, formats, folder)
+        package = RosPackage(ros_name(f"{study.name}_description"), _title(study, design), _values(study, design))
+        _write_models(robot, settings, log, formats, folder, package)
     if any(kind in formats for kind in LOG):
         words = {key: value_text(value) for key, value in design.items()}
         words = {"study": study.name, **words, "trajectory": config.flown.trajectory}
@@ -133,14 +136,34 @@ def flown_postures(settings: dyn.FlightSettings, log: dyn.FlightLog) -> dict[str
     return {name: postures[:, number] for number, name in enumerate(settings.joints)}
 
 
+def _title(study: Study, design: Design) -> str:
+    words = ", ".join(f"{key} = {value_text(value)}" for key, value in design.items())
+    return f"{study.title}: {words}"
+
+
+def _values(study: Study, design: Design) -> dict[str, str]:
+    """Design values in words by name with unit: offset_mm."""
+    units = {variable.name: variable.unit for variable in study.space.variables}
+    return {"_".join(filter(None, (name, units[name]))): value_text(value) for name, value in design.items()}
+
+
 def _write_models(
-    robot: RobotDescription, settings: dyn.FlightSettings, log: dyn.FlightLog, formats: Collection[str], folder: Path
+    robot: RobotDescription,
+    settings: dyn.FlightSettings,
+    log: dyn.FlightLog,
+    formats: Collection[str],
+    folder: Path,
+    package: RosPackage,
 ) -> None:
     readable = with_obj_meshes(robot)
     ignored = ignored_pairs(readable, flown_postures(settings, log))
-    robot.with_elements(urdf_collision_filters(ignored), NAMESPACE, BOUNDS).write(folder / "robot.urdf")
+    robot = robot.with_elements(urdf_collision_filters(ignored), NAMESPACE, BOUNDS)
+    robot.write(folder / "robot.urdf")
+    srdf = srdf_text(readable, settings, ignored)
+    write_text(folder / "robot.srdf", srdf)
+    if "ros2" in formats:
+        write_ros2_package(robot, srdf, settings, package, folder.parent / "ros2")
     robot = readable
-    write_text(folder / "robot.srdf", srdf_text(robot, settings, ignored))
     if "mjcf" in formats:
         write_text(folder / "robot.xml", mjcf_text(robot, settings, ignored))
     if "sdf" in formats:

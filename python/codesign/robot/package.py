@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
-from xml.sax.saxutils import quoteattr
 
 from codesign.errors import UrdfError
 from codesign.files import temporary_folder, write_text
 from codesign.geometry.mesh_files import obj_text
 from codesign.robot.description import RobotDescription
+from codesign.robot.formats.ros2 import cmake_text, package_xml, require_ros_name
 from codesign.robot.mesh_companions import companions
 
 if TYPE_CHECKING:
     import trimesh
 
-ROS_NAME = r"[a-z][a-z0-9_]*"  # of packages, REP 144
 MeshWriter = Callable[[Path], object]
 
 
@@ -113,15 +111,14 @@ def write_urdf_package(
         out_dir: made if absent; existing files of the same names are replaced, others are left alone.
         meshes: mesh filename as the robot names it -> function that writes that file (`part.write_stl`). Meshes not
             given are copied from where `resolve_mesh` finds them, with the materials, textures and buffers they name.
-        package: name of the ROS package: meshes are then referenced as package://name/meshes/…, and a package.xml is
-            written, so that the folder must be named the same to be found; by default they are relative to the URDF.
+        package: name of the ROS package: meshes are then referenced as package://name/meshes/…, and what `colcon build`
+            needs is written; the folder must be named the same to be found without. By default paths are relative.
         packages: where package:// references of the robot are looked for.
     Raises: UrdfError naming link and mesh if one is missing or outside the search path, or for a package name that ROS
     does not take.
     """
-    if package is not None and not re.fullmatch(ROS_NAME, package):
-        plain = re.sub(r"[^a-z0-9]+", "_", package.lower()).strip("_") or "robot"
-        raise UrdfError(f"package name {package!r}: ROS wants lower-case letters, digits and _, such as {plain!r}")
+    if package is not None:
+        require_ros_name(package)
     out_dir = Path(out_dir)
     out_dir.parent.mkdir(parents=True, exist_ok=True)
     with temporary_folder(out_dir) as staged:
@@ -136,7 +133,8 @@ def write_urdf_package(
                 )
         robot.with_mesh_filenames(renamed).write(staged / "robot.urdf")
         if package is not None:
-            (staged / "package.xml").write_text(_package_xml(package, robot.name), encoding="utf-8")
+            write_text(staged / "package.xml", package_xml(package, f"URDF and meshes of {robot.name}"))
+            write_text(staged / "CMakeLists.txt", cmake_text(package, ["meshes"], ["robot.urdf"]))
         _move_into(staged, out_dir)
     return out_dir / "robot.urdf"
 
@@ -193,16 +191,3 @@ def _move_into(staged: Path, out_dir: Path) -> None:
         target = out_dir / path.relative_to(staged)
         target.parent.mkdir(parents=True, exist_ok=True)
         path.replace(target)
-
-
-def _package_xml(package: str, robot: str) -> str:
-    description = quoteattr(f"URDF and meshes of {robot}")[1:-1]
-    return f"""<?xml version="1.0"?>
-<package format="3">
-  <name>{package}</name>
-  <version>0.0.0</version>
-  <description>{description}</description>
-  <maintainer email="user@localhost">user</maintainer>
-  <license>see the robot's own terms</license>
-</package>
-"""

@@ -9,7 +9,7 @@ import pytest
 
 from codesign import dynamics as dyn
 from codesign.robot.description import RobotDescription
-from codesign.robot.mjcf import mjcf_text
+from codesign.robot.formats.mjcf import mjcf_text
 from codesign.transforms import quaternion, rotation_from_rpy
 from exported_robots import ORIGINAL, Exported, export_robot, random_design
 

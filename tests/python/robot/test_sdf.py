@@ -10,8 +10,8 @@ from codesign import dynamics as dyn
 from codesign.errors import UrdfError
 from codesign.robot.collisions import ADJACENT, ignored_pairs
 from codesign.robot.description import RobotDescription
-from codesign.robot.mjcf import mjcf_text
-from codesign.robot.sdf import host_links, sdf_text
+from codesign.robot.formats.mjcf import mjcf_text
+from codesign.robot.formats.sdf import host_links, sdf_text
 from codesign.transforms import inverse, pose, rotation_about
 from exported_robots import ORIGINAL, Exported, export_robot
 

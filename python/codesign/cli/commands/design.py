@@ -105,7 +105,8 @@ def export(
 ) -> int:
     """What it takes to make and simulate a design: STL, STEP, 3MF, bill of materials, URDF with meshes, VTU, JSON.
 
-    With --formats also MJCF and SDF with the jets in them, and the flight as CSV, Parquet (log) and MCAP.
+    With --formats also MJCF and SDF with the jets in them, a package for ROS 2, and the flight as CSV, Parquet (log)
+    and MCAP.
     """
     from codesign.chain.study import load_study
     from codesign.cli.design import design_of_run, export_design

@@ -16,7 +16,7 @@ from codesign.errors import UrdfError
 from codesign.robot.bodies import depth_first, has_mass, rigid_bodies
 from codesign.robot.collisions import Pairs
 from codesign.robot.description import RobotDescription
-from codesign.robot.drake_filters import collision_filters
+from codesign.robot.formats.drake_filters import collision_filters
 from codesign.robot.jets import torque_limit
 from codesign.robot.urdf_xml import MOVING, number_text
 from codesign.transforms import Matrix, inverse, rpy_from_rotation
