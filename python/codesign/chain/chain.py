@@ -152,7 +152,7 @@ def _evaluate(
     documents = {name: documents[name] for name in parts}
     if answers and result.flights and all(flight.completed for flight in result.flights):
         documents |= _flown_strength(config, parts, robot, result, documents, answers)
-    document = {"parts": documents, **_flown(config, parts, robot, result, trajectory)}
+    document = {"parts": documents, **flight_numbers(config, parts, robot, result, trajectory)}
     verdict = judge(config, document, study.functions)
     evaluation = Evaluation(
         design=design.to_dict(),
@@ -197,10 +197,14 @@ def _flown_strength(
     }
 
 
-def _flown(
-    config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, result: Computed, trajectory: str | None
+def flight_numbers(
+    config: StudyConfig,
+    parts: Mapping[str, Part],
+    robot: RobotDescription,
+    result: Computed,
+    trajectory: str | None = None,
 ) -> dict[str, Any]:
-    """Flight and objective families of an evaluation; both empty without a flight."""
+    """Flight with clearances and objective families of an evaluation; both empty without a flight."""
     flights = result.flights
     if not flights:
         return {"flight": {}, "objective_families": {}}
@@ -309,13 +313,19 @@ def _mass(document: Mapping[str, Any]) -> Inertial:
 def _clearances(
     config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, flights: Sequence[dyn.FlightLog]
 ) -> dict[str, Any]:
-    """Clearances over the flown postures of all flights; empty if the study does not ask for them."""
+    """Clearances over the flown postures of all flights; empty if the study does not ask for them.
+
+    Of a robot that did not fly at all, having no hover, those of the study's initial posture.
+    """
+    if config.interference is None:
+        return {}
     history = np.concatenate([flight.joint_positions for flight in flights])
     times = np.concatenate([flight.time for flight in flights])
     finite = np.isfinite(history).all(axis=1)
     history, times = history[finite], times[finite]
-    if config.interference is None or not len(history):
-        return {}
+    if not len(history):
+        initial = [angle for group in config.flown.joint_groups for angle in group.initial_rad]
+        history, times = np.array([initial]), np.zeros(1)
     slices = config.interference.slices
     placed = {part.name: (part.placements, part_pieces(parts[part.name], slices)) for part in config.parts}
     return flown_interference(robot, config.interference, placed, joint_names(config.flown), history, times)

@@ -1,5 +1,6 @@
 """Evaluations that stop as soon as a design cannot enter the front: the flight first, strength and clearances last.
 
+Where a study says `lazy = "strength"`, clearances are measured with the flight, and only strength is left for last.
 What is not computed has no number: the reason says so. A feasible evaluation is always whole.
 """
 
@@ -9,7 +10,7 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from codesign.chain.chain import build_parts, build_robot, compute, evaluate, flown_document
+from codesign.chain.chain import build_parts, build_robot, compute, evaluate, flight_numbers, flown_document
 from codesign.chain.judge import FLIGHT_MISSED, Verdict, judge, limits
 from codesign.chain.provenance import provenance
 from codesign.errors import CodesignError
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from codesign.study.config import StudyConfig
 
 NOT_COMPUTED = "strength and clearances not computed"
+STRENGTH_NOT_COMPUTED = "strength not computed"
 FLIGHT, CLEARANCES, MASSES = "flight.", "flight.interference", "mass"
 
 
@@ -49,13 +51,19 @@ def evaluate_lazily(
 def can_wait(config: StudyConfig) -> bool:
     """Whether flight and masses give all objectives, and something else is left to compute."""
     wanted = [quantity(key.removeprefix(MINUS)) for key in config.objectives.keys]
-    return config.flight is not None and all(_early(q) or _massive(q) for q in wanted)
+    return config.flight is not None and all(_early(q, config) or _massive(q) for q in wanted)
 
 
-def _early(wanted: Quantity) -> bool:
+def _measures_early(config: StudyConfig) -> bool:
+    """Whether clearances are measured with the flight."""
+    return config.execution.lazy == "strength"
+
+
+def _early(wanted: Quantity, config: StudyConfig) -> bool:
     """Whether a flight gives a number."""
     path = wanted.path or wanted.key
-    return wanted.key in FAMILY or (path.startswith(FLIGHT) and not path.startswith(CLEARANCES))
+    late = path.startswith(CLEARANCES) and not _measures_early(config)
+    return wanted.key in FAMILY or (path.startswith(FLIGHT) and not late)
 
 
 def _massive(wanted: Quantity) -> bool:
@@ -69,18 +77,27 @@ def _flown_only(study: StudyData, design: Design, config: StudyConfig, rivals: S
     start = time.perf_counter()
     parts = build_parts(study, design, config)
     built = time.perf_counter()
-    result = compute(study, config, [], build_robot(study, design), None)
+    robot = build_robot(study, design)
+    result = compute(study, config, [], robot, None)
     if not result.flights:
         return None
     masses = {name: {MASSES: float(part.mass_properties().mass)} for name, part in parts.items()}
-    document = {"parts": masses, **flown_document(config, result.flights, result.seconds["flight"])}
-    chosen = [limit for limit in limits(config) if _early(limit.quantity) or limit.quantity.key == FLIGHT_MISSED]
+    flown = (
+        flight_numbers(config, parts, robot, result)
+        if _measures_early(config)
+        else flown_document(config, result.flights, result.seconds["flight"])
+    )
+    document = {"parts": masses, **flown}
+    chosen = [
+        limit for limit in limits(config) if _early(limit.quantity, config) or limit.quantity.key == FLIGHT_MISSED
+    ]
     verdict = judge(config, document, study.functions, chosen)
     rival = None if verdict.status == "infeasible" else rival_of(rivals, verdict.objectives.values())
     if verdict.status != "infeasible" and rival is None:
         return None
     seconds = {"geometry": built - start, **result.seconds, "total": time.perf_counter() - start}
-    return _stopped(study, design, verdict, rival, document | {"parts": {}}, seconds)
+    missing = STRENGTH_NOT_COMPUTED if _measures_early(config) else NOT_COMPUTED
+    return _stopped(study, design, verdict, rival, document | {"parts": {}}, seconds, missing)
 
 
 def _stopped(
@@ -90,12 +107,13 @@ def _stopped(
     rival: int | None,
     document: Mapping[str, Any],
     seconds: dict[str, float],
+    missing: str,
 ) -> Evaluation:
     reason = verdict.reason if rival is None else f"design {rival} is nowhere worse"
     return Evaluation(
         design=design.to_dict(),
         status="infeasible" if rival is None else "skipped",
-        reason=f"{reason}; {NOT_COMPUTED}",
+        reason=f"{reason}; {missing}",
         objectives=verdict.objectives,
         constraints=verdict.constraints,
         violations=verdict.violations,

@@ -62,7 +62,7 @@ class ExecutionDefaults(Protocol):
         """Worker processes."""
 
     @property
-    def lazy(self) -> bool | None:
+    def lazy(self) -> bool | str | None:
         """Whether strength and clearances of designs that cannot enter the front are left out; None: the search's."""
 
     @property

@@ -138,7 +138,7 @@ def _breeding(optimizer: OptimizerDefaults) -> dict[str, Any]:
 def _lazily(study: Problem, algorithm: str) -> bool:
     """What the study says, else what the search prefers. Raises: ValueError: there is no such search."""
     said = study.execution.lazy
-    return find_search(algorithm).lazy if said is None else said
+    return find_search(algorithm).lazy if said is None else bool(said)
 
 
 def sweep(study: StudyLike, counts: Sequence[int], *, out: str | Path, **resources: Unpack[Resources]) -> Run:

@@ -259,13 +259,14 @@ class OptimizerConfig(Section, frozen=True, kw_only=True):
 class ExecutionConfig(Section, frozen=True, kw_only=True):
     """Worker processes and their limits.
 
-    lazy: strength and clearances only of designs that can enter the front; None: true for the surrogate search.
+    lazy: strength and clearances only of designs that can enter the front, `"strength"`: strength alone; None: true for
+    the surrogate search.
     """
 
     workers: Annotated[int, Meta(ge=1, le=1000)] = 2
     time_limit_s: Annotated[float, Meta(gt=0, le=1e7)] = 120.0
     memory_limit_mib: Annotated[int, Meta(ge=64, le=2**30)] = 2048
-    lazy: bool | None = None
+    lazy: bool | Literal["strength"] | None = None
 
 
 class StudyConfig(Section, frozen=True, kw_only=True):

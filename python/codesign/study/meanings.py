@@ -259,7 +259,8 @@ _MEANINGS: dict[str, dict[str, str]] = {
         "workers": "processes that evaluate designs",
         "time_limit_s": "of one evaluation",
         "memory_limit_mib": "of one evaluation, beyond what the loaded study takes",
-        "lazy": "strength and clearances only of designs that can enter the front; `surrogate`: true, others: false",
+        "lazy": "strength and clearances only of designs that can enter the front (`true`), or strength alone "
+        '(`"strength"`); `surrogate`: true, others: false',
     },
 }  # fmt: skip
 MEANINGS = {

@@ -5,9 +5,9 @@ import dataclasses
 import msgspec
 import pytest
 
-from codesign.chain.lazy import NOT_COMPUTED, can_wait
+from codesign.chain.lazy import NOT_COMPUTED, STRENGTH_NOT_COMPUTED, can_wait
 from codesign.chain.study import load_study
-from codesign.study.config import LimitConfig, ObjectivesConfig
+from codesign.study.config import ExecutionConfig, LimitConfig, ObjectivesConfig
 
 STUDY = load_study("ironcub_paper")
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
@@ -54,6 +54,35 @@ def test_a_lost_flight_needs_no_strength():
     assert found.reason.endswith(NOT_COMPUTED)
     assert found.total_violation > 0
     assert found.parts == {}
+
+
+def strength_last(study):
+    """The study, with clearances measured before a design is left out."""
+    return dataclasses.replace(
+        study, config=msgspec.structs.replace(study.config, execution=ExecutionConfig(lazy="strength"))
+    )
+
+
+def test_where_strength_alone_waits_clearances_are_known(whole):
+    found = strength_last(STUDY).evaluate_lazily(DESIGN, [(7, tuple(whole.objectives.values()))])
+    assert found.status == "skipped"
+    assert found.reason == f"design 7 is nowhere worse; {STRENGTH_NOT_COMPUTED}"
+    assert found.flight["interference"] == whole.flight["interference"]
+    assert found.parts == {}
+    assert found.constraints == {key: value for key, value in whole.constraints.items() if key != "safety_factor"}
+
+
+def test_where_strength_alone_waits_a_missed_clearance_decides(whole):
+    constraints = msgspec.structs.replace(STUDY.config.constraints, plume_clearance_min_mm=200.0)
+    strict = dataclasses.replace(STUDY, config=msgspec.structs.replace(STUDY.config, constraints=constraints))
+    found = strength_last(strict).evaluate_lazily(DESIGN, [])
+    assert found.status == "infeasible"
+    assert found.reason.endswith(STRENGTH_NOT_COMPUTED)
+    assert found.margins["plume_clearance"] < 0.0
+    changed = msgspec.structs.replace(
+        STUDY.config, objectives=ObjectivesConfig(minimize=("momentum", "body_clearance"))
+    )
+    assert can_wait(msgspec.structs.replace(changed, execution=ExecutionConfig(lazy="strength")))
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,9 @@ import sys
 
 import pytest
 
+from codesign import load_study
+from codesign.storage.runs import load_run
+
 COMMANDS = (
     "evaluate", "fly", "optimize", "resume", "runs", "report", "validate", "view", "export", "stress", "new",
     "check", "doctor", "materials", "schema",
@@ -127,11 +130,12 @@ def test_new_study_runs_from_its_folder(tmp_path, monkeypatch):
     assert codesign("new", str(tmp_path / "mine")).returncode == 0
     monkeypatch.delenv("CODESIGN_CACHE", raising=False)  # a developer may have set it
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    arguments = ("--population", "4", "--generations", "2", "--out", str(tmp_path / "run"), "--json")
+    arguments = ("--population", "4", "--generations", "2", "--original", "--out", str(tmp_path / "run"), "--json")
     result = codesign("optimize", "--study", str(tmp_path / "mine"), *arguments, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert sorted(p.name for p in tmp_path.iterdir()) == ["cache", "mine", "run"]
     assert json.loads(result.stdout)["designs"] == 8
+    assert load_run(tmp_path / "run").evaluations[0].design == dict(load_study(tmp_path / "mine").baseline)
     listed = codesign("runs", str(tmp_path), "--json")
     assert json.loads(listed.stdout)[0]["study"] == "gimbal_quad"
     again = codesign("resume", str(tmp_path / "run"), "--json")

@@ -20,8 +20,18 @@ def raw_study(name: str = "ironcub_whole") -> tuple[dict, Study]:
     return json.loads(json.dumps(study.raw)), study
 
 
+PUBLISHED_RATE = {"throttle_every": 20, "small_steps": 7, "control_steps": 12}  # at 200 Hz; the study's own is 50 Hz
+
+
+def at_published_rate() -> Study:
+    raw, study = raw_study()
+    raw["flight"]["step_s"] = 0.005
+    raw["flight"]["mpc"] |= PUBLISHED_RATE
+    return study_from(raw, study.path, Study)
+
+
 def test_the_study_flies_what_the_reference_flies() -> None:
-    config = load_study("ironcub_whole").config
+    config = at_published_rate().config
     settings, wanted = flight_settings(config.flown, find_trajectory(config, "route")), whole.settings(reference=False)
     for attribute in ("joints", "step", "duration"):
         assert getattr(settings, attribute) == getattr(wanted, attribute)
@@ -80,6 +90,27 @@ def test_without_a_hover_a_design_is_lost_at_its_start() -> None:
     assert document["status"] == "lost"
     assert "no hover" in document["reason"]
     assert document["constraints"]["flight_missed_share"] == 1.0
+
+
+def test_without_a_hover_clearances_are_those_of_the_initial_posture() -> None:
+    study = load_study("ironcub_whole")
+    found = study.evaluate_lazily(dict(study.baseline) | {"angle": 70.0}, [])
+    assert found.status == "infeasible"
+    assert "no hover" in (found.reason or "")
+    assert found.flight["interference"]["bodies"][0]["time"] == 0.0
+    assert found.violations["body_clearance"] > 0.0  # turbine and head of this design meet
+
+
+def test_rates_of_control_agree_on_what_a_route_burns() -> None:
+    fast, slow = at_published_rate(), load_study("ironcub_whole")
+    burnt = []
+    for study in (fast, slow):
+        raw = json.loads(json.dumps(study.raw))
+        raw["trajectories"]["route"]["duration_s"] = 6.0
+        short = study_from(raw, study.path, Study)
+        flight = fly_robot(short, short.build_robot(short.baseline), trajectory="route")["flight"]
+        burnt.append(flight["fuel"])
+    assert burnt[1] == pytest.approx(burnt[0], rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -24,9 +24,14 @@ from codesign.cli.options import (
 from codesign.errors import StoreError, StudyError
 
 if TYPE_CHECKING:
+    from codesign.chain.study import Study
+    from codesign.problem.design_space import Design
     from codesign.search.optimization import Resources
 
 commands = typer.Typer()
+OriginalOption = Annotated[
+    bool, typer.Option("--original", help="The study's original design is the first of the start population.")
+]
 
 
 @commands.command(
@@ -48,6 +53,7 @@ def optimize(
         typer.Option(help="surrogate, nsga2, nsga3, agemoea, agemoea2, smsemoa or random; default: the study's."),
     ] = None,
     start: Annotated[str, typer.Option(help="sobol, sobol-plain (as in the paper) or random.")] = "sobol",
+    original: OriginalOption = False,
     steady: Annotated[bool, typer.Option(help="Offspring without waiting for whole generations.")] = False,
     wall_time: Annotated[float | None, typer.Option(help="Seconds after which no new design is tried.")] = None,
     stall_generations: Annotated[
@@ -78,6 +84,7 @@ def optimize(
                 seed=seed,
                 algorithm=algorithm,
                 start=start,
+                first=_original(loaded) if original else [],
                 steady=steady,
                 wall_time=wall_time,
                 stall_generations=stall_generations,
@@ -89,6 +96,12 @@ def optimize(
         err.print(f"continue with: codesign resume {folder}")
         return INTERRUPTED
     return print_run(run, as_json)
+
+
+def _original(study: Study) -> list[Design]:
+    if study.baseline is None:
+        raise StudyError(f"{study.path}: --original: the study names no original design, [baseline]")
+    return [study.baseline]
 
 
 @commands.command(epilog="Example: `codesign resume runs/a`")
