@@ -6,6 +6,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -14,6 +15,7 @@ from browser import open_browser, visit
 from codesign.report import write_report
 from codesign.report.details import FOLDER, save_detail
 from codesign.report.page.what_if import what_if_models
+from codesign.report.pareto import normalized
 from codesign.report.reading import read_report_data
 from synthetic_details import detail
 
@@ -73,6 +75,25 @@ def test_the_chart_selects_on_click_rings_hovered_rows_and_changes_axes(browser,
         assert page.locator("#front .ytitle").text_content() == "Thrust (N)"
         page.select_option("#axis-x", "2")
         assert page.evaluate("[front.x, front.y]") == [2, 0]
+
+
+def test_weights_of_the_objectives_choose_another_design(browser, address):
+    with visit(browser, address) as page:
+        values = np.array(page.evaluate("report.choices.map(i => designs[i].f)"))
+        for weights in ([10, 10, 10], [20, 3, 1], [0, 0, 20]):
+            for k, weight in enumerate(weights):
+                page.locator(f"#weight-{k}").fill(str(weight))
+            losses = normalized(values) * weights
+            wanted = int(np.argmin(losses.max(axis=1) + 1e-4 * losses.sum(axis=1)))
+            chosen = page.locator("#weights-choice button")
+            assert chosen.get_attribute("data-select") == str(page.evaluate("k => report.choices[k]", wanted))
+        chosen.click()
+        page.wait_for_function(
+            "state.selected === Number(document.querySelector('#weights-choice button').dataset.select)"
+        )
+        assert page.locator("#weights b").all_inner_texts() == ["0 %", "0 %", "100 %"]
+        page.locator("#weight-2").fill("0")
+        assert page.locator("#weights-choice").inner_text() == "Give one of them a weight."
 
 
 def test_the_table_sorts_filters_and_follows_the_arrow_keys(browser, address):

@@ -66,6 +66,7 @@ def page_document(
         "designs": rows,
         "baseline": baseline,
         "recommended": run.recommended,
+        "choices": run.choices,
         "best": run.best,
         "progress": progress(run),
         "details": details or {},

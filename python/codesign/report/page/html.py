@@ -18,7 +18,7 @@ from codesign.report.page.validation import strips
 from codesign.report.page.what_if import what_if_document, what_if_models
 from codesign.report.validation import Validation
 
-SCRIPTS = ("base.js", "front.js", "table.js", "design.js", "search.js", "whatif.js", "main.js")
+SCRIPTS = ("base.js", "front.js", "weights.js", "table.js", "design.js", "search.js", "whatif.js", "main.js")
 
 
 def render(

@@ -89,6 +89,7 @@ if (!FILTERS.front || !designs.some(FILTERS.front)) table.filter = 'all';
 frontControls();
 tableControls();
 whatIfControls();
+weightControls();
 drawTable();
 paint(remembered() || (system.matches ? 'dark' : 'light'));
 if (known(state.selected)) { card(state.selected); markRow(); }

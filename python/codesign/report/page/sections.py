@@ -77,11 +77,23 @@ def _trade_offs(run: ReportData) -> Block:
     body = (
         f'<div class="trade"><div class="chart"><div id="front" role="img" aria-label="{label}"></div>'
         f'<ul class="key">{key}</ul><p class="count"><span id="front-outside"></span> '
-        f'<button type="button" class="link" data-save="front">Save as PNG</button></p></div>{CARD}</div>{ANNOUNCEMENT}'
+        f'<button type="button" class="link" data-save="front">Save as PNG</button></p>{_weights(run)}</div>'
+        f"{CARD}</div>{ANNOUNCEMENT}"
     )
     third = " Color is the remaining objective." if len(run.objectives) > 2 else ""
     text = f"Lower is better on both axes.{third} Click a design to see it; drag to zoom, double-click to zoom back."
     return _block("trade-offs", "Trade-offs", "Trade-offs", text, body, controls)
+
+
+def _weights(run: ReportData) -> str:
+    """Sliders that weigh the objectives, if there is something to choose."""
+    if len(run.objectives) < 2 or len(run.choices) < 2:
+        return ""
+    return (
+        '<h3>What counts for you</h3><p class="count">Each objective counts from its lowest to its highest value among '
+        "the best compromises that may be built; preferred is the design whose largest weighted loss is least.</p>"
+        '<div id="weights" class="sliders"></div><p id="weights-choice" aria-live="polite"></p>'
+    )
 
 
 def _parts_and_flight() -> Block:
