@@ -1,5 +1,6 @@
 #include "fem/stress/surface_distance.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,8 +43,11 @@ void SurfaceDistance::add_edge(const TetMesh& mesh, int triangle, int k, double 
 }
 
 void SurfaceDistance::sort_pieces() {
+  Eigen::AlignedBox3d box;
+  for (const Piece& p : pieces_) box.extend(p.center);
+  if (!pieces_.empty()) box.sizes().maxCoeff(&axis_);
   std::sort(pieces_.begin(), pieces_.end(),
-            [](const Piece& p, const Piece& q) { return p.center[0] < q.center[0]; });
+            [this](const Piece& p, const Piece& q) { return p.center[axis_] < q.center[axis_]; });
 }
 
 SurfaceDistance::SurfaceDistance(const TetMesh& mesh, const std::vector<int>& triangles,
@@ -55,9 +59,9 @@ SurfaceDistance::SurfaceDistance(const TetMesh& mesh, const std::vector<int>& tr
 bool SurfaceDistance::within(const Eigen::Vector3d& point, double more) const {
   const double span = max_extent_ + more;
   const auto first =
-      std::lower_bound(pieces_.begin(), pieces_.end(), point[0] - span,
-                       [](const Piece& piece, double x) { return piece.center[0] < x; });
-  for (auto p = first; p != pieces_.end() && p->center[0] <= point[0] + span; ++p) {
+      std::lower_bound(pieces_.begin(), pieces_.end(), point[axis_] - span,
+                       [this](const Piece& piece, double x) { return piece.center[axis_] < x; });
+  for (auto p = first; p != pieces_.end() && p->center[axis_] <= point[axis_] + span; ++p) {
     const double reach = p->reach + more, far = reach + p->radius;
     if (reach < 0 || (p->center - point).squaredNorm() > far * far) continue;
     if (squared_distance_to_triangle(point, p->a, p->b, p->c) <= reach * reach) return true;

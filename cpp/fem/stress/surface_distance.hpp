@@ -41,7 +41,8 @@ class SurfaceDistance {
   void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
            double reach);
 
-  std::vector<Piece> pieces_;  // by center.x
+  std::vector<Piece> pieces_;  // by center[axis_]
+  Eigen::Index axis_ = 0;      // along which their centers spread farthest
   double max_extent_ = 0.0;    // of radius + reach
 };
 
