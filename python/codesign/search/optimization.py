@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
-from codesign.errors import StudyError
+from codesign.errors import ExecutionError, StudyError
 from codesign.execution.pool import DEFAULT_LOADER, Executor, Limits, LocalPool, StudyRef
 from codesign.execution.worker import load
 from codesign.problem.design_space import DesignValue
@@ -176,7 +176,12 @@ def run_search(study: Problem, settings: Settings, out: str | Path, **resources:
         "cache": None if cache is None else str(cache),
     }
     with RunStore.create(out, meta) as store:
-        _drive(study, settings, store, cache, resources)
+        try:
+            _drive(study, settings, store, cache, resources)
+        except (ExecutionError, ValueError):
+            if store.counts().keys() <= {"queued"}:  # the workers did not even start
+                store.discard()
+            raise
     return load_run(out)
 
 

@@ -22,6 +22,7 @@ from codesign.problem.evaluation import Evaluation
 from codesign.storage.database import (
     APPLICATION_ID,
     DATABASE,
+    LOCK,
     MIGRATIONS,
     VERSION,
     existing,
@@ -169,6 +170,21 @@ class RunStore:
             self._connection.close()
         if self._lock is not None:
             self._lock.close()
+
+    def discard(self) -> None:
+        """Closes the run and removes its file; its folder too if nothing else is in it."""
+        folder = self.path.parent
+        with contextlib.suppress(sqlite3.Error):
+            self._connection.close()
+        for path in (
+            self.path,
+            *(self.path.with_name(self.path.name + end) for end in ("-wal", "-shm")),
+            folder / LOCK,
+        ):
+            path.unlink(missing_ok=True)
+        self.close()
+        with contextlib.suppress(OSError):
+            folder.rmdir()
 
     def _execute(self, statement: str, values: Sequence[Any] = ()) -> sqlite3.Cursor:
         with guard(self.path):

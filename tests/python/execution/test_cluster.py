@@ -41,6 +41,17 @@ def test_local_cluster_gives_the_same_rows(tmp_path, whole: Run) -> None:
 def test_addresses_that_make_no_sense_are_refused_at_once(tmp_path, address) -> None:
     with pytest.raises(ExecutionError, match="expected"):
         optimize(fake(), out=tmp_path / "run", cluster=address, cache=None, generations=5)
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_cluster_that_is_not_there_leaves_what_the_folder_held(tmp_path) -> None:
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("mine")
+    with pytest.raises(ExecutionError, match="expected"):
+        optimize(fake(), out=folder, cluster="local:0", cache=None, generations=5)
+    assert [path.name for path in folder.iterdir()] == ["notes.txt"]
+    assert optimize(fake(), out=folder, workers=1, cache=None, generations=1).evaluations
 
 
 def test_lost_and_joined_workers_lose_nothing(tmp_path, whole: Run) -> None:
