@@ -33,19 +33,46 @@ Part = Callable[[], GeneratedPart]
 Line = dict[str, Any]
 
 
-def genus_of(triangles: np.ndarray) -> tuple[int, int, int]:
-    """Closed pieces, total genus and edges without exactly two triangles, counted apart from the mesher."""
+def components(joins: np.ndarray, count: int) -> int:
+    """Groups of `count` items that pairs (n, 2) join."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
+    graph = coo_matrix((np.ones(len(joins)), joins.T), shape=(count, count))
+    return int(connected_components(graph, directed=False)[0])
+
+
+def surface_topology(triangles: np.ndarray) -> tuple[int, int]:
+    """Closed pieces and Euler characteristic of a surface."""
     points, t = np.unique(triangles, return_inverse=True)
-    t = t.reshape(-1, 3)
-    edges = np.sort(np.vstack([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1)
-    edges, uses = np.unique(edges, axis=0, return_counts=True)
-    graph = coo_matrix((np.ones(len(edges)), edges.T), shape=(len(points), len(points)))
-    pieces, _ = connected_components(graph, directed=False)
-    euler = len(points) - len(edges) + len(t)
-    return int(pieces), (2 * int(pieces) - euler) // 2, int((uses != 2).sum())
+    edges = np.unique(np.sort(t.reshape(-1, 3)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    return components(edges, len(points)), len(points) - len(edges) + len(triangles)
+
+
+def solid_topology(tets: np.ndarray) -> tuple[int, int]:
+    """Closed pieces and Euler characteristic of the boundary of tetrahedra (n, 4), counted apart from the mesher.
+
+    Twice the characteristic of the solid, in which points and edges count once for each group of tetrahedra about them
+    that hang together by sides: where the boundary touches itself, the solid does not.
+    """
+    count, sides = len(tets), np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
+    order = np.argsort(tets, axis=1)
+    tets = np.take_along_axis(tets, order, axis=1)
+    all_sides = tets[:, sides].reshape(-1, 3)
+    unique, which, uses = np.unique(all_sides, axis=0, return_inverse=True, return_counts=True)
+    by_side = np.argsort(which.ravel(), kind="stable")
+    first = np.concatenate([[0], np.cumsum(uses)[:-1]])[uses == 2]
+    one, other = by_side[first], by_side[first + 1]  # the same side of two tetrahedra, its points in the same order
+    pairs = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
+    number = {tuple(pair): k for k, pair in enumerate(pairs)}
+    edges = np.array([[number[(s[0], s[1])], number[(s[0], s[2])], number[(s[1], s[2])]] for s in sides.tolist()])
+
+    def joined(of_side: np.ndarray, each: int) -> int:
+        ends = [each * (x // 4)[:, None] + of_side[x % 4] for x in (one, other)]
+        return components(np.stack(ends, axis=-1).reshape(-1, 2), each * count)
+
+    euler = joined(sides, 4) - joined(edges, 6) + len(unique) - count
+    return surface_topology(all_sides[uses[which.ravel()] == 1])[0], 2 * euler
 
 
 def displacement(mesh: fem.TetMesh) -> float:
@@ -68,11 +95,11 @@ def examine(part: GeneratedPart) -> Line:
     except CodesignError as error:
         return line | {"error": str(error), "mesh_s": time.process_time() - start}
     line["mesh_s"] = time.process_time() - start
-    wanted, found = genus_of(surface.triangles), genus_of(mesh.boundary[:, :3])
+    wanted, found = surface_topology(surface.triangles), solid_topology(mesh.tets[:, :4])
     volume = fem.mass_properties(surface, 1.0).volume
     return line | {
         "same_topology": wanted == found,
-        "genus": found[1],
+        "genus": found[0] - found[1] // 2,
         "pieces": found[0],
         "tetrahedra": len(mesh.tets),
         "refinements": mesh.report.refinements,
