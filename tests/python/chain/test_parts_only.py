@@ -4,6 +4,7 @@ import shutil
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from codesign.chain.judge import limits
@@ -13,7 +14,8 @@ from codesign.report.scene import robot_scene
 from codesign.report.study_words import flight_words
 from codesign.study.loading import find_problems, study_from
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "parts_only"
+EXAMPLES = Path(__file__).parents[3] / "examples"
+EXAMPLE = EXAMPLES / "parts_only"
 DESIGN = {"reach": 60, "thickness": 10, "alloy": "6061-t6"}
 
 
@@ -43,6 +45,16 @@ def test_the_example_is_sound_and_judged_by_its_parts(folder):
     volume = 30.0 * (60.0 * 10.0 + 50.0 * 10.0) + 30.0 * 25.0 * (1.0 - 3.14159265 / 4.0)  # mm³, fillet included
     assert evaluation.objectives["mass"] == pytest.approx(volume * 1e-9 * 2700.0, rel=1e-3)
     evaluation.to_json()
+
+
+def test_a_part_of_a_step_file_is_studied_like_one_of_the_part_language(tmp_path):
+    study = load_study(shutil.copytree(EXAMPLES / "imported", tmp_path / "study"))
+    evaluation = study.evaluate({"bore": 6, "place": 60})
+    bar, bore = 80.0 * 16.0 * 12.0, np.pi / 4.0 * 6.0**2 * 12.0  # mm³
+    assert evaluation.objectives["mass"] == pytest.approx(2700e-9 * (bar - bore), rel=1e-3)
+    bending = 300.0 * 80.0 / (16.0 * 12.0**2 / 6.0)  # MPa, at the mount
+    assert 276.0 / evaluation.parts["strut"]["safety_factor"] == pytest.approx(bending, rel=0.1)
+    assert "safety factor" in study.evaluate({"bore": 10, "place": 10}).reason
 
 
 def test_a_limit_that_is_missed_makes_it_infeasible(folder):

@@ -29,7 +29,9 @@ NAME = "flyer_description"
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
     """A robot with meshes, its package below the folder src."""
-    exported = export_robot("ironcub_paper", ORIGINAL["ironcub_paper"], tmp_path_factory.mktemp("ros") / "robot", duration=0.2)
+    exported = export_robot(
+        "ironcub_paper", ORIGINAL["ironcub_paper"], tmp_path_factory.mktemp("ros") / "robot", duration=0.2
+    )
     robot = RobotDescription.load(exported.folder / "robot.urdf")
     srdf = srdf_text(exported.robot, exported.settings, exported.ignored)
     package = RosPackage(NAME, "flyer: a < b", {"angle_deg": "15", "kind": "a"})
