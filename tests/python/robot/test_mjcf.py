@@ -4,14 +4,15 @@ import re
 
 import mujoco
 import numpy as np
-import pinocchio as pin
 import pytest
 
 from codesign import dynamics as dyn
 from codesign.robot.description import RobotDescription
 from codesign.robot.formats.mjcf import mjcf_text
-from codesign.transforms import quaternion, rotation_from_rpy
+from codesign.transforms import quaternion
 from exported_robots import ORIGINAL, Exported, export_robot, random_design
+from robot_readers import differences
+from robot_readers import mujoco as mujoco_reader
 
 POSTURES = 10
 
@@ -26,66 +27,10 @@ def load(exported):
     return model, mujoco.MjData(model)
 
 
-def differences(exported: Exported) -> dict[str, float]:
-    """Largest differences between both readers over random postures and poses of the base, joints set by name."""
-    model, data = load(exported)
-    other = pin.buildModelFromUrdf(str(exported.folder / "robot.urdf"), pin.JointModelFreeFlyer())
-    state = other.createData()
-    rng = np.random.default_rng(3)
-    found = {"mass": abs(model.body_subtreemass[1] - pin.computeTotalMass(other))}
-    for _ in range(POSTURES):
-        R, p = rotation_from_rpy(rng.uniform(-3, 3, 3)), rng.uniform(-2, 2, 3)
-        w, x, y, z = quaternion(R)
-        q = pin.neutral(other)
-        q[:7] = [*p, x, y, z, w]
-        data.qpos[:7] = [*p, w, x, y, z]
-        for name in exported.joints:
-            limit = exported.robot.joint(name).limit
-            angle = rng.uniform(limit.lower, limit.upper)
-            q[other.joints[other.getJointId(name)].idx_q] = angle
-            data.joint(name).qpos = angle
-        mujoco.mj_forward(model, data)
-        pin.framesForwardKinematics(other, state, q)
-        pin.ccrba(other, state, q, np.zeros(other.nv))
-        gravity = pin.computeGeneralizedGravity(other, state, q)
-        pairs = {
-            "com": (data.subtree_com[1], pin.centerOfMass(other, state, q)),
-            "inertia": (locked_inertia(model, data), state.Ig.inertia),
-            "frames": tuple(
-                np.array(poses)
-                for poses in zip(
-                    *(
-                        (
-                            np.column_stack([data.body(link).xmat.reshape(3, 3), data.body(link).xpos]),
-                            state.oMf[other.getFrameId(link)].homogeneous[:3],
-                        )
-                        for link in exported.robot.link_names
-                    ),
-                    strict=True,
-                )
-            ),
-            "gravity": (
-                np.array([data.joint(name).qfrc_bias[0] for name in exported.joints]),
-                np.array([gravity[other.joints[other.getJointId(name)].idx_v] for name in exported.joints]),
-            ),
-            "lift": (data.qfrc_bias[:3], R @ gravity[:3]),
-        }
-        for name, (a, b) in pairs.items():
-            found[name] = max(found.get(name, 0.0), float(np.abs(a - b).max()))
-    return found
-
-
-def locked_inertia(model, data):
-    """About the center of mass, world axes."""
-    total, com = np.zeros((3, 3)), data.subtree_com[1]
-    for i in range(1, model.nbody):
-        R, r = data.ximat[i].reshape(3, 3), data.xipos[i] - com
-        total += R @ np.diag(model.body_inertia[i]) @ R.T + model.body_mass[i] * (r @ r * np.eye(3) - np.outer(r, r))
-    return total
-
-
 def test_masses_frames_and_gravity_are_those_of_the_urdf(exported):
-    assert {name: value for name, value in differences(exported).items() if value > 1e-11} == {}
+    assert {
+        name: value for name, value in differences(exported, mujoco_reader(exported), POSTURES).items() if value > 1e-11
+    } == {}
 
 
 @pytest.mark.slow
@@ -93,7 +38,9 @@ def test_masses_frames_and_gravity_are_those_of_the_urdf(exported):
 @pytest.mark.parametrize("study", ORIGINAL)
 def test_random_designs_agree(study, seed, tmp_path):
     exported = export_robot(study, random_design(study, seed), tmp_path / "robot", duration=1.0)
-    assert {name: value for name, value in differences(exported).items() if value > 1e-11} == {}
+    assert {
+        name: value for name, value in differences(exported, mujoco_reader(exported), POSTURES).items() if value > 1e-11
+    } == {}
 
 
 def test_the_start_is_in_the_file(exported):
