@@ -14,7 +14,7 @@ from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields,
 from codesign.cli.export_folder import MANIFEST, export_folder, files_in
 from codesign.cli.export_formats import CAD, DEFAULT, LOG, ROBOT
 from codesign.cli.order import Order
-from codesign.cli.robot_files import write_robot_files, write_urdf
+from codesign.cli.robot_files import AS_FLOWN, write_robot_files, write_urdf
 from codesign.errors import DesignError
 from codesign.fem.gmsh import write_msh
 from codesign.fem.vtu import StressModel, write_vtu
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from codesign.chain.study import Study
     from codesign.dynamics import FlightLog
     from codesign.problem.evaluation import Evaluation
+    from codesign.robot.formats.simplified import Simplification
 
 
 def export_design(
@@ -44,6 +45,7 @@ def export_design(
     organization: str = "",
     force: bool = False,
     formats: Sequence[str] = DEFAULT,
+    robot_files: Simplification = AS_FLOWN,
 ) -> list[Path]:
     """Evaluates a design and writes its files into a folder (made if absent); returns their paths.
 
@@ -53,7 +55,8 @@ def export_design(
     flight if asked for. `stress/`: VTU of each part.
 
     chosen: how the design was found, in words. organization: for the files' headers. force: replace another design's
-    export. formats: which of `export_formats.FORMATS` are written.
+    export. formats: which of `export_formats.FORMATS` are written. robot_files: what is written differently from the
+    robot that was flown.
 
     Raises: DesignError; ExportError if the folder holds something else; CodesignError of the chain.
     """
@@ -70,7 +73,7 @@ def export_design(
             _write_cad(order, folder / "cad")
             evaluation, analyses, flight = chain.result()
         if flight is not None and any(kind in formats for kind in (*ROBOT, *LOG)):
-            write_robot_files(study, evaluation, placed, flight, formats, folder / "robot")
+            write_robot_files(study, evaluation, placed, flight, formats, folder / "robot", robot_files)
         elif study.config.robot is not None and "urdf" in formats:
             write_urdf(study, build_robot(study, design), placed, folder / "robot")
         models = {}

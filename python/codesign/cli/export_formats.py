@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 from collections.abc import Collection
+from typing import Literal
 
 from codesign.errors import ExportError, LibraryError
 from codesign.names import nearest
@@ -14,6 +15,8 @@ LOG = ("csv", "parquet", "mcap")
 FORMATS = (*CAD, *ROBOT, *LOG, "vtu", "msh")
 DEFAULT = ("stl", "step", "3mf", "glb", "pdf", "urdf", "vtu")
 SHORT = {"log": ("csv", "parquet"), "all": FORMATS}
+Frames = Literal["keep", "drop", "tiny"]  # links without mass in robot files
+FRAMES: tuple[Frames, ...] = ("keep", "drop", "tiny")
 LIBRARIES = {
     "dxf": ("ezdxf", "drawing"),
     "parquet": ("pyarrow", "analysis"),
@@ -56,6 +59,14 @@ def parse_formats(text: str) -> tuple[str, ...]:
                 "the formats without it"
             )
     return tuple(name for name in FORMATS if name in chosen)
+
+
+def parse_frames(text: str) -> Frames:
+    """What becomes of links without mass. Raises: ExportError for a word that is not known."""
+    for known in FRAMES:
+        if text == known:
+            return known
+    raise ExportError(f"--frames: {text!r} is none of {', '.join(FRAMES)}")
 
 
 def units_of(formats: Collection[str]) -> dict[str, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,6 +30,7 @@ from codesign.robot.formats.drake_filters import NAMESPACE, urdf_collision_filte
 from codesign.robot.formats.mjcf import mjcf_text
 from codesign.robot.formats.ros2 import RosPackage, ros_name, write_ros2_package
 from codesign.robot.formats.sdf import sdf_text
+from codesign.robot.formats.simplified import Simplification, simplified, with_tiny_inertials
 from codesign.robot.formats.srdf import srdf_text
 from codesign.robot.jets import flying_document
 from codesign.robot.package import MeshWriter, with_obj_meshes, write_urdf_package
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from codesign.chain.study import Study
 
 BOUNDS = " effort and velocity of joints are at most the bounds of the study's controller: robot.json "
+AS_FLOWN = Simplification()
 EVERY = 25  # samples of a flight between two postures in which collision shapes may overlap
 
 
@@ -51,6 +54,7 @@ def write_robot_files(
     log: dyn.FlightLog,
     formats: Collection[str],
     folder: Path,
+    how: Simplification = AS_FLOWN,
 ) -> None:
     """Writes what the formats ask for.
 
@@ -58,7 +62,8 @@ def write_robot_files(
     csv, parquet, mcap: flight.*. With each robot.json: jets, start, controller. ros2: a package in the folder `ros2`
     beside.
 
-    components: parts in their places and the links that they are. log: of the flight that the evaluation is of.
+    components: parts in their places and the links that they are. log: of the flight that the evaluation is of. how:
+    what is written differently from the robot that was flown.
     """
     design = study.space.design(evaluation.design)
     config = study.configured(design)
@@ -70,7 +75,7 @@ def write_robot_files(
     if any(kind in formats for kind in ROBOT):
         robot = write_urdf(study, robot, components, folder, settings.limits if momentum_qp else None)
         package = RosPackage(ros_name(f"{study.name}_description"), _title(study, design), _values(study, design))
-        _write_models(robot, settings, log, formats, folder, package)
+        _write_models(robot, settings, log, formats, folder, package, how)
     if any(kind in formats for kind in LOG):
         words = {key: value_text(value) for key, value in design.items()}
         words = {"study": study.name, **words, "trajectory": config.flown.trajectory}
@@ -80,6 +85,7 @@ def write_robot_files(
         "design": evaluation.design,
         "trajectory": config.flown.trajectory,
         "objectives": evaluation.objectives,
+        "robot_files": asdict(how),
     }
     write_text(folder / "robot.json", json.dumps(document, indent=1))
 
@@ -154,10 +160,14 @@ def _write_models(
     formats: Collection[str],
     folder: Path,
     package: RosPackage,
+    how: Simplification,
 ) -> None:
+    postures = flown_postures(settings, log)
+    robot, words = simplified(robot, how, [jet.frame for jet in settings.actuators], postures)
     readable = with_obj_meshes(robot)
-    ignored = ignored_pairs(readable, flown_postures(settings, log))
-    robot = robot.with_elements(urdf_collision_filters(ignored), NAMESPACE, BOUNDS)
+    ignored = ignored_pairs(readable, postures)
+    robot = with_tiny_inertials(robot) if how.frames == "tiny" else robot
+    robot = robot.with_elements([], {}, words).with_elements(urdf_collision_filters(ignored), NAMESPACE, BOUNDS)
     robot.write(folder / "robot.urdf")
     srdf = srdf_text(readable, settings, ignored)
     write_text(folder / "robot.srdf", srdf)

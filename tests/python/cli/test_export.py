@@ -14,7 +14,7 @@ import synthetic_run
 from codesign.chain.study import load_study
 from codesign.cli.design import design_of_run, export_design, unplaced
 from codesign.cli.export_folder import MANIFEST, export_folder
-from codesign.cli.export_formats import CAD, DEFAULT, FORMATS, parse_formats, units_of
+from codesign.cli.export_formats import CAD, DEFAULT, FORMATS, parse_formats, parse_frames, units_of
 from codesign.errors import CodesignError, DesignError, ExportError, LibraryError
 from codesign.parts.step import SCHEMAS
 from vtu_files import read_vtu
@@ -150,6 +150,12 @@ def test_formats_by_name() -> None:
     assert "robot/flight.*" not in units_of(DEFAULT)
     assert set(units_of(("csv",))) == {"robot/flight.*", "evaluation.json", "bom.csv"}
     assert set(CAD) < set(FORMATS)
+
+
+def test_frames_by_name() -> None:
+    assert parse_frames("tiny") == "tiny"
+    with pytest.raises(ExportError, match="--frames: 'none' is none of keep, drop, tiny"):
+        parse_frames("none")
 
 
 def test_a_missing_library_is_said_before_anything_runs(monkeypatch: pytest.MonkeyPatch) -> None:

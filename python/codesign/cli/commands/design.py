@@ -9,7 +9,7 @@ import typer
 from rich.table import Table
 
 from codesign.cli.console import err, out, print_confirmations, print_evaluation, print_json, shown
-from codesign.cli.export_formats import DEFAULT, FORMATS, parse_formats
+from codesign.cli.export_formats import DEFAULT, FORMATS, parse_formats, parse_frames
 from codesign.cli.options import (
     DEFAULT_STUDY,
     EXAMPLE_DESIGN,
@@ -101,6 +101,12 @@ def export(
     formats: Annotated[str, typer.Option(help=f"List with commas of {', '.join(FORMATS)}; log; all.")] = ",".join(
         DEFAULT
     ),
+    frames: Annotated[
+        str, typer.Option(help="Links without mass in robot files: keep, drop, or tiny (an inertial in URDF).")
+    ] = "keep",
+    exact_axes: Annotated[
+        bool, typer.Option("--exact-axes", help="Robot files: axes nearly along coordinate axes exactly so.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> int:
     """What it takes to make and simulate a design: STL, STEP, 3MF, bill of materials, URDF with meshes, VTU, JSON.
@@ -110,16 +116,25 @@ def export(
     """
     from codesign.chain.study import load_study
     from codesign.cli.design import design_of_run, export_design
+    from codesign.robot.formats.simplified import Simplification
 
     if (run_dir is None) == (not set_):
         raise DesignError("export needs either a design by --set or a run by --run")
     kinds = parse_formats(formats)
+    robot_files = Simplification(parse_frames(frames), exact_axes)
     if run_dir is None:
         loaded, design, chosen = load_study(study), parse_design(set_ or []), ""
     else:
         loaded, design, chosen = design_of_run(run_dir, selector)
     written = export_design(
-        loaded, design, out_dir, chosen=chosen, organization=organization, force=force, formats=kinds
+        loaded,
+        design,
+        out_dir,
+        chosen=chosen,
+        organization=organization,
+        force=force,
+        formats=kinds,
+        robot_files=robot_files,
     )
     if as_json:
         print_json({"files": [str(path) for path in written]})
