@@ -24,6 +24,7 @@ from codesign.transforms import Matrix, quaternion
 GRAVITY = 9.81  # m/s², along -z of the world, as flown
 TIME_STEP = 1e-3  # s
 DRAWN, COLLIDING = "2", "3"  # groups of geoms as viewers expect them
+RIGID = "0.9999 0.9999 0.001"  # impedances of an equality, the largest there are; by default 0.9: forces 10 % off
 START = "start"  # name of the posture in which the flight begins
 TURBINE = " %s: the turbine's second order cannot be said here; the control is the thrust itself [N] "
 LAG = " %s: the control is the thrust wanted [N], within the limits; first-order lag "
@@ -207,7 +208,8 @@ def _append_mimics(root: ET.Element, robot: RobotDescription) -> None:
         equality = ET.SubElement(root, "equality")
         for name, (followed, multiplier, offset) in robot.mimics.items():
             coefficients = number_text([offset, multiplier, 0, 0, 0])
-            ET.SubElement(equality, "joint", joint1=name, joint2=followed, polycoef=coefficients)
+            pair = {"joint1": name, "joint2": followed}
+            ET.SubElement(equality, "joint", {**pair, "polycoef": coefficients, "solimp": RIGID})
 
 
 def _append_start(root: ET.Element, robot: RobotDescription, settings: dyn.FlightSettings) -> None:
