@@ -11,9 +11,9 @@ from pathlib import Path
 # A folder may include those further down in its list, of its own line none but itself; fem is part_analysis.
 LAYERS = (
     ("bindings",),
-    ("fem", "dynamics"),
-    ("fem/elasticity",),
-    ("fem/stress",),
+    ("fem", "dynamics/flight"),
+    ("fem/elasticity", "dynamics/predictive", "dynamics/urdf"),
+    ("fem/stress", "dynamics"),
     ("fem/la",),
     ("fem/boundary", "fem/meshing", "fem/smoothing"),
     ("fem/mesh",),
@@ -25,8 +25,8 @@ RANK = {folder: rank for rank, folders in enumerate(LAYERS) for folder in folder
 LIBRARIES = {
     r"CGAL/": ("fem/meshing", "fem/smoothing", "fem/surface"),
     r"(cholmod|SuiteSparse\w*)\.h": ("fem/la",),
-    r"expat\.h": ("dynamics",),
-    r"urdf_(model|parser)/": ("dynamics",),
+    r"expat\.h": ("dynamics/urdf",),
+    r"urdf_(model|parser)/": ("dynamics/urdf",),
     r"pybind11/": ("bindings",),
 }
 

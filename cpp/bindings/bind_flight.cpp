@@ -9,8 +9,8 @@
 #include "bindings/bindings.hpp"
 #include "bindings/py_model.hpp"
 #include "dynamics/box_qp.hpp"
-#include "dynamics/flight.hpp"
-#include "dynamics/flight_start.hpp"
+#include "dynamics/flight/flight.hpp"
+#include "dynamics/flight/flight_start.hpp"
 
 namespace py = pybind11;
 

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "dynamics/flight.hpp"
+#include "dynamics/flight/flight.hpp"
 #include "dynamics/urdf/urdf.hpp"
 
 namespace codesign {

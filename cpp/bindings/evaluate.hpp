@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/flight_log.hpp"
+#include "dynamics/flight/flight_log.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "fem/part_analysis.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
-#include "dynamics/flying/standardized_turbine.hpp"
 #include "dynamics/jet.hpp"
+#include "dynamics/standardized_turbine.hpp"
 
 namespace codesign::dynamics {
 
@@ -29,6 +29,12 @@ struct Actuator {
   double thrust_min = 0.0, thrust_max = 1.0;         // [N]
   double thrust_rate = 1.0;                          // largest [N/s]
   ThrustDynamics dynamics = RateIntegrator{};
+};
+
+// Fuel of one jet: idle + per_newton · thrust [kg/s].
+struct FuelRate {
+  double idle = 0.0;        // [kg/s]
+  double per_newton = 0.0;  // [kg/s/N]
 };
 
 // The command that makes the thrust change at `wanted_rate` [N/s], as far as the range allows.

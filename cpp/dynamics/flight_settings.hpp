@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "dynamics/actuator.hpp"
-#include "dynamics/flying/flight_measures.hpp"
-#include "dynamics/flying/waypoints.hpp"
-#include "dynamics/predictive/settings.hpp"
+#include "dynamics/predictive_settings.hpp"
 #include "dynamics/trim.hpp"
+#include "dynamics/waypoints.hpp"
 
 namespace codesign::dynamics {
 
@@ -133,8 +132,8 @@ struct Tank {
   double consumption = 0.0;                            // [kg/(N s)] of the actuators' thrust
 };
 
-// What the controller does not know. Gusts are a first-order Gauss-Markov process per world axis that
-// depends on no step; every random number comes from the seed (disturbance.hpp).
+// What the controller does not know. Gusts are a first-order Gauss-Markov process per world axis
+// that depends on no step; every random number comes from the seed (disturbance.hpp).
 struct Disturbances {
   Eigen::Vector3d wind_force = Eigen::Vector3d::Zero();      // on the base's origin, world axes [N]
   Eigen::Vector3d wind_velocity = Eigen::Vector3d::Zero();   // of the air, world axes [m/s]

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 
 #include "dynamics/flight_settings.hpp"
-#include "dynamics/flying/waypoints.hpp"
 #include "dynamics/motion_filter.hpp"
 #include "dynamics/spatial.hpp"
+#include "dynamics/waypoints.hpp"
 
 namespace codesign::dynamics {
 

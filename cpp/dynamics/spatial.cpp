@@ -74,6 +74,13 @@ Vector3d rotation_to_rpy(const Matrix3d& R) {
   return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
 }
 
+Vector3d angle_difference(const Vector3d& a, const Vector3d& b) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  Vector3d difference = a - b;
+  for (double& angle : difference) angle -= kTurn * std::round(angle / kTurn);
+  return difference;
+}
+
 double rotation_error(const Matrix3d& R) {
   if (!(R.determinant() > 0.0)) return 2.0;
   return (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff();

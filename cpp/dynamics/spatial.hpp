@@ -29,6 +29,9 @@ Eigen::Matrix3d rpy_to_rotation(const Eigen::Vector3d& rpy);
 // The inverse, pitch within [-π/2, π/2]; at a pitch of ±π/2 the roll is set to zero.
 Eigen::Vector3d rotation_to_rpy(const Eigen::Matrix3d& R);
 
+// a − b, each entry within a half turn [rad].
+Eigen::Vector3d angle_difference(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 // Largest entry of |RᵀR - 1|, or 2 if R is a reflection: how far R is from a rotation.
 double rotation_error(const Eigen::Matrix3d& R);
 

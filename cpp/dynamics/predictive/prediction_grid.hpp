@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "dynamics/predictive/settings.hpp"
+#include "dynamics/predictive_settings.hpp"
 
 namespace codesign::dynamics {
 

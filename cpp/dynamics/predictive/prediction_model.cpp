@@ -6,8 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dynamics/flying/flight_samples.hpp"
-
 namespace codesign::dynamics {
 
 using Eigen::Index;

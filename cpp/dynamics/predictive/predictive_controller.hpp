@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "dynamics/box_qp.hpp"
-#include "dynamics/flying/waypoints.hpp"
 #include "dynamics/predictive/condensed_qp.hpp"
+#include "dynamics/waypoints.hpp"
 
 namespace codesign::dynamics {
 

@@ -2,13 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace codesign::dynamics {
+#include "dynamics/actuator.hpp"
 
-// Fuel of one jet: idle + per_newton · thrust [kg/s].
-struct FuelRate {
-  double idle = 0.0;        // [kg/s]
-  double per_newton = 0.0;  // [kg/s/N]
-};
+namespace codesign::dynamics {
 
 // Tracking, energy and fuel of a flight. Integrals are left sums.
 struct FlightMeasures {

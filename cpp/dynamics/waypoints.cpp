@@ -1,4 +1,4 @@
-#include "dynamics/flying/waypoints.hpp"
+#include "dynamics/waypoints.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

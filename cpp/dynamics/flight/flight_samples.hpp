@@ -3,7 +3,7 @@
 #include <chrono>
 #include <vector>
 
-#include "dynamics/flight_log.hpp"
+#include "dynamics/flight/flight_log.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "dynamics/robot_terms.hpp"
 
@@ -43,9 +43,6 @@ class PointHeights {
 // R in a history of rotations, row after row.
 void write_rotation(const Eigen::Matrix3d& R, History& history, int k);
 Eigen::Matrix3d read_rotation(const History& history, int k);
-
-// a − b, each entry within a half turn [rad].
-Eigen::Vector3d angle_difference(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 // Sum of the pulses that act in a step which starts at `time`, up to rounding.
 struct PulseSum {

@@ -1,4 +1,4 @@
-#include "dynamics/objectives.hpp"
+#include "dynamics/flight/objectives.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

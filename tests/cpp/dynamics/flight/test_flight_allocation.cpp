@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "allocation_count.hpp"
-#include "dynamics/flight.hpp"
+#include "dynamics/flight/flight.hpp"
 #include "dynamics/robot_terms.hpp"
 #include "flying_robot.hpp"
 

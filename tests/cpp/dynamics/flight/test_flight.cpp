@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dynamics/flight.hpp"
+#include "dynamics/flight/flight.hpp"
 #include "flying_robot.hpp"
 
 namespace codesign::dynamics {

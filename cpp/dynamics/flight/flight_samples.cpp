@@ -1,9 +1,8 @@
-#include "dynamics/flying/flight_samples.hpp"
+#include "dynamics/flight/flight_samples.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace codesign::dynamics {
 
@@ -30,13 +29,6 @@ void write_rotation(const Eigen::Matrix3d& R, History& history, int k) {
 
 Eigen::Matrix3d read_rotation(const History& history, int k) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(history.row(k).data());
-}
-
-Eigen::Vector3d angle_difference(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  Eigen::Vector3d difference = a - b;
-  for (double& angle : difference) angle -= kTurn * std::round(angle / kTurn);
-  return difference;
 }
 
 PulseSum pulses_at(const std::vector<Pulse>& pulses, double time) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dynamics/objectives.hpp"
+#include "dynamics/flight/objectives.hpp"
 #include "flying_robot.hpp"
 
 namespace codesign::dynamics {

@@ -1,17 +1,17 @@
-#include "dynamics/flight.hpp"
+#include "dynamics/flight/flight.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "dynamics/disturbance.hpp"
 #include "dynamics/drives.hpp"
-#include "dynamics/flight_start.hpp"
-#include "dynamics/flying/flight_samples.hpp"
+#include "dynamics/flight/flight_samples.hpp"
+#include "dynamics/flight/flight_start.hpp"
+#include "dynamics/flight/objectives.hpp"
+#include "dynamics/flight/predictive_flight.hpp"
 #include "dynamics/momentum_controller.hpp"
 #include "dynamics/momentum_observer.hpp"
-#include "dynamics/objectives.hpp"
 #include "dynamics/plant.hpp"
-#include "dynamics/predictive/predictive_flight.hpp"
 #include "dynamics/torque_controller.hpp"
 #include "interrupt.hpp"
 

@@ -1,4 +1,4 @@
-#include "dynamics/flying/flight_measures.hpp"
+#include "dynamics/flight/flight_measures.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "dynamics/flight_log.hpp"
+#include "dynamics/flight/flight_log.hpp"
 
 namespace codesign::dynamics {
 

@@ -1,7 +1,7 @@
 #include <stdexcept>
 
-#include "dynamics/flight.hpp"
-#include "dynamics/flight_start.hpp"
+#include "dynamics/flight/flight.hpp"
+#include "dynamics/flight/flight_start.hpp"
 #include "interrupt.hpp"
 
 namespace codesign::dynamics {

@@ -1,4 +1,4 @@
-#include "dynamics/predictive/settings.hpp"
+#include "dynamics/predictive_settings.hpp"
 
 #include <cmath>
 #include <set>

@@ -1,11 +1,11 @@
-#include "dynamics/predictive/predictive_flight.hpp"
+#include "dynamics/flight/predictive_flight.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "dynamics/disturbance.hpp"
-#include "dynamics/flying/flight_samples.hpp"
+#include "dynamics/flight/flight_samples.hpp"
 #include "dynamics/predictive/predictive_controller.hpp"
 #include "dynamics/predictive/servo_plant.hpp"
 #include "interrupt.hpp"

@@ -1,4 +1,4 @@
-#include "dynamics/flying/standardized_turbine.hpp"
+#include "dynamics/standardized_turbine.hpp"
 
 #include <algorithm>
 #include <cmath>

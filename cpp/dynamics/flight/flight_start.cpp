@@ -1,4 +1,4 @@
-#include "dynamics/flight_start.hpp"
+#include "dynamics/flight/flight_start.hpp"
 
 #include <stdexcept>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "dynamics/flight_log.hpp"
+#include "dynamics/flight/flight_log.hpp"
+#include "dynamics/flight/flight_start.hpp"
 #include "dynamics/flight_settings.hpp"
-#include "dynamics/flight_start.hpp"
 #include "dynamics/model.hpp"
 
 namespace codesign::dynamics {

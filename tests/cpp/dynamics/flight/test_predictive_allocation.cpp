@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "allocation_count.hpp"
-#include "dynamics/flight.hpp"
+#include "dynamics/flight/flight.hpp"
 #include "flying_robot.hpp"
 
 namespace codesign::dynamics {

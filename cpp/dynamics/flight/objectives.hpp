@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/flight_log.hpp"
+#include "dynamics/flight/flight_log.hpp"
 #include "dynamics/flight_settings.hpp"
 
 namespace codesign::dynamics {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/flying/flight_measures.hpp"
+#include "dynamics/flight/flight_measures.hpp"
 
 namespace codesign::dynamics {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dynamics/flight_log.hpp"
+#include "dynamics/flight/flight_log.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "dynamics/model.hpp"
 #include "dynamics/momentum_controller.hpp"
