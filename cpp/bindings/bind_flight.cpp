@@ -54,7 +54,7 @@ void bind_box_qp(py::module_& m) {
              "a Cholesky pivot of the free block is not positive")
       .value("bad_data", QpStatus::kBadData, "a value is not a number, or bounds are crossed");
   py::class_<BoxQpResult>(m, "BoxQpResult", "Solution of a box QP with its certificate.")
-      .def_readonly("status", &BoxQpResult::status)
+      .def_readonly("status", &BoxQpResult::status, "QpStatus")
       .def_readonly("x", &BoxQpResult::x, "(n,) the minimizer")
       .def_readonly("multipliers", &BoxQpResult::multipliers,
                     "(n,) H x + g at the solution: >= 0 where x is at its lower bound, <= 0 at its "
@@ -80,7 +80,7 @@ void bind_box_qp(py::module_& m) {
       .def("solve", &solve_checked, py::arg("H"), py::arg("g"), py::arg("lower"), py::arg("upper"),
            "As solve_box_qp, warm-started from the last call.")
       .def("reset", &BoxQpSolver::reset, "Forget the last working set.")
-      .def_property_readonly("size", &BoxQpSolver::size);
+      .def_property_readonly("size", &BoxQpSolver::size, "largest number of unknowns");
 }
 
 // A history as an array that shares its memory with the log.
@@ -199,12 +199,16 @@ void bind_log(py::module_& m) {
       .value("completed", FlightStatus::kCompleted)
       .value("failed", FlightStatus::kFailed);
   py::class_<FlightObjectives>(m, "FlightObjectives", "One family of objectives, to be minimized.")
-      .def_readonly("momentum", &FlightObjectives::momentum)
-      .def_readonly("joint_velocity", &FlightObjectives::joint_velocity)
+      .def_readonly("momentum", &FlightObjectives::momentum,
+                    "of linear and angular momentum error; units of the family, docs/flight.md")
+      .def_readonly("joint_velocity", &FlightObjectives::joint_velocity,
+                    "of velocity minus command, groups weighted; units of the family")
       .def_readonly("thrust", &FlightObjectives::thrust, "mean total thrust [N]");
   py::class_<ObjectiveParts>(m, "ObjectiveParts", "Terms of a family before they are added.")
-      .def_readonly("linear_momentum", &ObjectiveParts::linear_momentum)
-      .def_readonly("angular_momentum", &ObjectiveParts::angular_momentum)
+      .def_readonly("linear_momentum", &ObjectiveParts::linear_momentum,
+                    "units of the family; rms: [kg m/s]")
+      .def_readonly("angular_momentum", &ObjectiveParts::angular_momentum,
+                    "units of the family; rms: [kg m^2/s]")
       .def_readonly("joint_velocity", &ObjectiveParts::joint_velocity,
                     "one per joint group, without its weight");
   py::class_<FlightProfile>(m, "FlightProfile", "Wall time of a flight by phase of the step [s].")
@@ -220,11 +224,12 @@ void bind_log(py::module_& m) {
                             "What happened in a flight: histories (read-only arrays that share the "
                             "log's memory), status and summary. SI units, world axes.");
   bind_histories(log);
-  log.def_readonly("samples", &FlightLog::samples)
-      .def_readonly("step", &FlightLog::step)
-      .def_readonly("status", &FlightLog::status)
+  log.def_readonly("samples", &FlightLog::samples, "N, how many there are")
+      .def_readonly("step", &FlightLog::step, "between samples [s]")
+      .def_readonly("status", &FlightLog::status, "FlightStatus")
       .def_property_readonly(
-          "completed", [](const FlightLog& l) { return l.status == FlightStatus::kCompleted; })
+          "completed", [](const FlightLog& l) { return l.status == FlightStatus::kCompleted; },
+          "whether the status says so")
       .def_property_readonly("failure_reason", &reason_text, "text, or None")
       .def_property_readonly(
           "failure_time",
@@ -233,7 +238,8 @@ void bind_log(py::module_& m) {
                                                      : std::nullopt;
           },
           "[s], or None")
-      .def_readonly("ground_touched", &FlightLog::ground_touched)
+      .def_readonly("ground_touched", &FlightLog::ground_touched,
+                    "whether a contact point was below the ground")
       .def_readonly("max_com_error", &FlightLog::max_com_error, "[m]")
       .def_readonly("max_attitude_error", &FlightLog::max_attitude_error, "[rad]")
       .def_readonly("min_thrust", &FlightLog::min_thrust, "[N]")
@@ -242,15 +248,17 @@ void bind_log(py::module_& m) {
       .def_readonly("max_joint_speed", &FlightLog::max_joint_speed, "[rad/s]")
       .def_readonly("min_clearance", &FlightLog::min_clearance, "[m]")
       .def_readonly("fuel_burnt", &FlightLog::fuel_burnt, "[kg]")
-      .def_readonly("qp_failures", &FlightLog::qp_failures)
-      .def_readonly("total_qp_iterations", &FlightLog::total_qp_iterations)
-      .def_readonly("profile", &FlightLog::profile)
-      .def_readonly("rms", &FlightLog::rms)
-      .def_readonly("script", &FlightLog::script)
-      .def_readonly("paper", &FlightLog::paper)
-      .def_readonly("rms_parts", &FlightLog::rms_parts)
-      .def_readonly("script_parts", &FlightLog::script_parts)
-      .def_readonly("measures", &FlightLog::measures);
+      .def_readonly("qp_failures", &FlightLog::qp_failures, "steps in which a QP was not solved")
+      .def_readonly("total_qp_iterations", &FlightLog::total_qp_iterations,
+                    "factorizations of both QPs")
+      .def_readonly("profile", &FlightLog::profile, "FlightProfile")
+      .def_readonly("rms", &FlightLog::rms, "FlightObjectives: root mean squares, SI")
+      .def_readonly("script", &FlightLog::script,
+                    "FlightObjectives as the authors' program prints them")
+      .def_readonly("paper", &FlightLog::paper, "FlightObjectives as the paper defines them")
+      .def_readonly("rms_parts", &FlightLog::rms_parts, "terms of rms")
+      .def_readonly("script_parts", &FlightLog::script_parts, "terms of script")
+      .def_readonly("measures", &FlightLog::measures, "FlightMeasures");
 }
 
 }  // namespace

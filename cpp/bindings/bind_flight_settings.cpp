@@ -22,20 +22,20 @@ void bind_reference_settings(py::module_& m) {
 
   py::class_<ContactPoint> contact(m, "ContactPoint", "A point monitored for ground contact.");
   bind_keywords(contact);
-  contact.def_readwrite("frame", &ContactPoint::frame)
+  contact.def_readwrite("frame", &ContactPoint::frame, "name")
       .def_readwrite("position", &ContactPoint::position, "(3,) in the frame [m]");
 
   py::class_<CommandWindow> window(
       m, "CommandWindow", "Pilot's command at samples with start < t < end; signs of the speeds.");
   bind_keywords(window);
-  window.def_readwrite("start", &CommandWindow::start)
-      .def_readwrite("end", &CommandWindow::end)
-      .def_readwrite("front", &CommandWindow::front)
-      .def_readwrite("left", &CommandWindow::left)
-      .def_readwrite("up", &CommandWindow::up)
-      .def_readwrite("roll", &CommandWindow::roll)
-      .def_readwrite("pitch", &CommandWindow::pitch)
-      .def_readwrite("yaw", &CommandWindow::yaw);
+  window.def_readwrite("start", &CommandWindow::start, "[s]")
+      .def_readwrite("end", &CommandWindow::end, "[s]")
+      .def_readwrite("front", &CommandWindow::front, "-1 to 1, of the speed")
+      .def_readwrite("left", &CommandWindow::left, "-1 to 1, of the speed")
+      .def_readwrite("up", &CommandWindow::up, "-1 to 1, of the speed")
+      .def_readwrite("roll", &CommandWindow::roll, "-1 to 1, of the speed")
+      .def_readwrite("pitch", &CommandWindow::pitch, "-1 to 1, of the speed")
+      .def_readwrite("yaw", &CommandWindow::yaw, "-1 to 1, of the speed");
 
   py::class_<CommandSpeeds> speeds(m, "CommandSpeeds", "Change of the reference per second.");
   bind_keywords(speeds);
@@ -73,14 +73,17 @@ void bind_control_settings(py::module_& m) {
 
   py::class_<Weights> weights(m, "Weights", "Weights of the momentum QP and the torque QP.");
   bind_keywords(weights);
-  weights.def_readwrite("momentum", &Weights::momentum)
-      .def_readwrite("constant_inertia", &Weights::constant_inertia)
-      .def_readwrite("posture", &Weights::posture)
-      .def_readwrite("joint_velocity", &Weights::joint_velocity)
-      .def_readwrite("thrust_rate", &Weights::thrust_rate)
-      .def_readwrite("thrust_symmetry", &Weights::thrust_symmetry)
-      .def_readwrite("regularization", &Weights::regularization)
-      .def_readwrite("torque", &Weights::torque);
+  weights.def_readwrite("momentum", &Weights::momentum, "of the momentum's squared error")
+      .def_readwrite("constant_inertia", &Weights::constant_inertia,
+                     "of the task that keeps the inertia constant")
+      .def_readwrite("posture", &Weights::posture, "of the distance from the initial posture")
+      .def_readwrite("joint_velocity", &Weights::joint_velocity, "of joint velocities")
+      .def_readwrite("thrust_rate", &Weights::thrust_rate, "of thrust rates")
+      .def_readwrite("thrust_symmetry", &Weights::thrust_symmetry,
+                     "of differences within symmetry_pairs")
+      .def_readwrite("regularization", &Weights::regularization,
+                     "of everything, so that the solution is unique")
+      .def_readwrite("torque", &Weights::torque, "of torques, in the torque QP");
 
   py::class_<Limits> limits(m, "Limits", "Ranges of joints, thrusts and torques.");
   bind_keywords(limits);
@@ -98,9 +101,9 @@ void bind_control_settings(py::module_& m) {
 
   py::class_<JointGroup> group(m, "JointGroup", "Joints of one term of the velocity objective.");
   bind_keywords(group);
-  group.def_readwrite("name", &JointGroup::name)
-      .def_readwrite("joints", &JointGroup::joints)
-      .def_readwrite("weight", &JointGroup::weight);
+  group.def_readwrite("name", &JointGroup::name, "of the group")
+      .def_readwrite("joints", &JointGroup::joints, "names")
+      .def_readwrite("weight", &JointGroup::weight, "of its velocity in the objective");
 
   py::class_<FailureLimits> failure(m, "FailureLimits", "The flight is lost beyond these.");
   bind_keywords(failure);
@@ -138,7 +141,7 @@ void bind_control_settings(py::module_& m) {
   py::class_<Actuator> actuator(
       m, "Actuator", "What pushes the robot along a line fixed in a frame: a jet, a propeller.");
   bind_keywords(actuator);
-  actuator.def_readwrite("frame", &Actuator::frame)
+  actuator.def_readwrite("frame", &Actuator::frame, "name")
       .def_readwrite("axis", &Actuator::axis, "(3,) unit vector in the frame; thrust pushes along")
       .def_readwrite("reaction", &Actuator::reaction,
                      "moment about the axis per thrust, as of a propeller's drag [N m/N]")
@@ -165,7 +168,7 @@ void bind_control_settings(py::module_& m) {
                      "(jets,) plant's thrust over the jet's; empty: 1")
       .def_readwrite("thrust_deviation", &Disturbances::thrust_deviation,
                      "relative standard deviation, drawn per jet")
-      .def_readwrite("seed", &Disturbances::seed);
+      .def_readwrite("seed", &Disturbances::seed, "of gusts and drawn deviations");
 }
 
 void bind_plant_settings(py::module_& m) {
@@ -198,7 +201,7 @@ void bind_plant_settings(py::module_& m) {
   py::class_<DragArea> drag(m, "DragArea",
                             "What air drags: force -0.5 rho area |u| u, u against the air.");
   bind_keywords(drag);
-  drag.def_readwrite("frame", &DragArea::frame)
+  drag.def_readwrite("frame", &DragArea::frame, "name")
       .def_readwrite("position", &DragArea::position, "(3,) in the frame [m]")
       .def_readwrite("area", &DragArea::area, "C_d A [m^2]");
 
@@ -206,7 +209,7 @@ void bind_plant_settings(py::module_& m) {
                         "Fuel on board, part of its link's inertia at the start; the controller "
                         "does not see it go.");
   bind_keywords(tank);
-  tank.def_readwrite("frame", &Tank::frame)
+  tank.def_readwrite("frame", &Tank::frame, "name")
       .def_readwrite("position", &Tank::position, "(3,) of the fuel, in the frame [m]")
       .def_readwrite("fuel", &Tank::fuel, "[kg]")
       .def_readwrite("consumption", &Tank::consumption, "[kg/(N s)]");
@@ -223,7 +226,7 @@ void bind_settings(py::module_& m) {
       .def_readwrite("duration", &FlightSettings::duration, "[s]")
       .def_readwrite("torque_updates", &FlightSettings::torque_updates,
                      "of the torque loop per step, evenly spaced")
-      .def_readwrite("integrator", &FlightSettings::integrator)
+      .def_readwrite("integrator", &FlightSettings::integrator, "of the plant")
       .def_readwrite("substeps", &FlightSettings::substeps, "plant steps per torque update")
       .def_readwrite("rotation_deadband", &FlightSettings::rotation_deadband,
                      "base rotations of a plant step below this are dropped [rad]; published: 1e-6")
@@ -240,29 +243,29 @@ void bind_settings(py::module_& m) {
                      "(joints,) [rad]; empty: the angles at the start")
       .def_readwrite("rotor_inertia", &FlightSettings::rotor_inertia,
                      "(joints,) of the drives as their joints feel it [kg m^2]; empty: none")
-      .def_readwrite("friction", &FlightSettings::friction)
-      .def_readwrite("delays", &FlightSettings::delays)
+      .def_readwrite("friction", &FlightSettings::friction, "of the joints' drives")
+      .def_readwrite("delays", &FlightSettings::delays, "of what the controllers ask for")
       .def_readwrite("drag", &FlightSettings::drag, "list of DragArea")
       .def_readwrite("air_density", &FlightSettings::air_density, "[kg/m^3]")
       .def_readwrite("tank", &FlightSettings::tank, "Tank or None")
-      .def_readwrite("command_speeds", &FlightSettings::command_speeds)
+      .def_readwrite("command_speeds", &FlightSettings::command_speeds, "of full commands")
       .def_readwrite("trajectory", &FlightSettings::trajectory, "list of CommandWindow")
-      .def_readwrite("reference", &FlightSettings::reference)
-      .def_readwrite("gains", &FlightSettings::gains)
-      .def_readwrite("weights", &FlightSettings::weights)
-      .def_readwrite("limits", &FlightSettings::limits)
+      .def_readwrite("reference", &FlightSettings::reference, "from commands to references")
+      .def_readwrite("gains", &FlightSettings::gains, "of all loops")
+      .def_readwrite("weights", &FlightSettings::weights, "of the QPs")
+      .def_readwrite("limits", &FlightSettings::limits, "of joints, thrusts, torques")
       .def_readwrite("symmetry_pairs", &FlightSettings::symmetry_pairs, "pairs of jet indices")
       .def_readwrite("groups", &FlightSettings::groups, "list of JointGroup")
-      .def_readwrite("contact_points", &FlightSettings::contact_points)
+      .def_readwrite("contact_points", &FlightSettings::contact_points, "list of ContactPoint")
       .def_readwrite("ground_height", &FlightSettings::ground_height, "[m]")
-      .def_readwrite("failure", &FlightSettings::failure)
-      .def_readwrite("disturbances", &FlightSettings::disturbances)
-      .def_readwrite("controller", &FlightSettings::controller)
+      .def_readwrite("failure", &FlightSettings::failure, "where the flight is lost")
+      .def_readwrite("disturbances", &FlightSettings::disturbances, "of the plant")
+      .def_readwrite("controller", &FlightSettings::controller, "Controller")
       .def_readwrite("path", &FlightSettings::path, "replaces the commands if it has way-points")
       .def_readwrite("pulses", &FlightSettings::pulses, "list of Pulse")
       .def_readwrite("fuel", &FlightSettings::fuel, "of each jet")
-      .def_readwrite("predictive", &FlightSettings::predictive)
-      .def_readwrite("servo_plant", &FlightSettings::servo_plant)
+      .def_readwrite("predictive", &FlightSettings::predictive, "of that controller")
+      .def_readwrite("servo_plant", &FlightSettings::servo_plant, "of that controller's robot")
       .def(
           "validate", [](const FlightSettings& self) { validate(self); },
           "Raise ValueError naming the first attribute that is wrong.")

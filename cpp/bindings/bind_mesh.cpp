@@ -33,10 +33,10 @@ Args:
     radius: m.)")
       .def(py::init<Points, double, double, double>(), "points"_a, "size"_a, "growth"_a = 0.5,
            "radius"_a = 0.0)
-      .def_readonly("points", &SizeSource::points)
-      .def_readonly("size", &SizeSource::size)
-      .def_readonly("growth", &SizeSource::growth)
-      .def_readonly("radius", &SizeSource::radius);
+      .def_readonly("points", &SizeSource::points, "(k, 3) m")
+      .def_readonly("size", &SizeSource::size, "m")
+      .def_readonly("growth", &SizeSource::growth, "of the edge length per distance")
+      .def_readonly("radius", &SizeSource::radius, "m");
   py::class_<SizeField>(m, "SizeField", R"(Edge length wanted at each point.
 
 min(base, size + growth * max(0, distance - radius)) over all sources; meters.)")
@@ -46,8 +46,8 @@ min(base, size + growth * max(0, distance - radius)) over all sources; meters.)"
              return field;
            }),
            "base"_a, "sources"_a = std::vector<SizeSource>{})
-      .def_readonly("base", &SizeField::base)
-      .def_readonly("sources", &SizeField::sources)
+      .def_readonly("base", &SizeField::base, "m")
+      .def_readonly("sources", &SizeField::sources, "list of SizeSource")
       .def("scaled", &scaled, "factor"_a,
            "The field with all edge lengths times a positive factor.")
       .def_property_readonly("smallest", &smallest_size, "m, the smallest edge length anywhere")
@@ -74,13 +74,15 @@ TetMesh make_mesh(const Points& nodes, const Tets& tets,
 
 void bind_quality(py::module_& m) {
   py::class_<MeshQuality>(m, "MeshQuality", "Shape of the tetrahedra between their corners.")
-      .def_property_readonly("min_dihedral_deg",
-                             [](const MeshQuality& q) { return q.min_dihedral / kDegree; })
-      .def_property_readonly("max_dihedral_deg",
-                             [](const MeshQuality& q) { return q.max_dihedral / kDegree; })
+      .def_property_readonly(
+          "min_dihedral_deg", [](const MeshQuality& q) { return q.min_dihedral / kDegree; },
+          "degrees")
+      .def_property_readonly(
+          "max_dihedral_deg", [](const MeshQuality& q) { return q.max_dihedral / kDegree; },
+          "degrees")
       .def_readonly("min_radius_ratio", &MeshQuality::min_radius_ratio,
                     "3 inscribed / circumscribed radius; 1 regular, 0 flat")
-      .def_readonly("mean_radius_ratio", &MeshQuality::mean_radius_ratio)
+      .def_readonly("mean_radius_ratio", &MeshQuality::mean_radius_ratio, "1 if all are regular")
       .def_readonly("worst_tet", &MeshQuality::worst_tet, "of the smallest dihedral angle")
       .def_readonly("below_5_degrees", &MeshQuality::below_5_degrees,
                     "elements with a dihedral angle below 5 degrees")
@@ -136,7 +138,7 @@ Raises:
           "boundary_face",
           [](py::object self) { return view(self.cast<const TetMesh&>().boundary_face, self); },
           "(b,) index into face_names")
-      .def_readonly("face_names", &TetMesh::face_names)
+      .def_readonly("face_names", &TetMesh::face_names, "that boundary_face indexes")
       .def_readonly("report", &TetMesh::report, "MeshReport of how it was made")
       .def_property_readonly("quality", &measure_quality, "MeshQuality of the elements")
       .def("__repr__", [](const TetMesh& mesh) {

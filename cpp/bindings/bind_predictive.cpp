@@ -30,15 +30,15 @@ void bind_path(py::module_& m) {
   bind_keywords(path);
   path.def_readwrite("start", &WaypointPath::start, "time at the start position [s]")
       .def_readwrite("waypoints", &WaypointPath::waypoints, "list of Waypoint")
-      .def_readwrite("kind", &WaypointPath::kind);
+      .def_readwrite("kind", &WaypointPath::kind, "WaypointKind");
   py::class_<PathPoint>(m, "PathPoint", "Position (x, y, z) and yaw of a path, derivatives.")
       .def_readonly("value", &PathPoint::value, "(4,) [m, rad]")
-      .def_readonly("velocity", &PathPoint::velocity, "(4,)")
-      .def_readonly("acceleration", &PathPoint::acceleration, "(4,)")
-      .def_readonly("jerk", &PathPoint::jerk, "(4,)");
+      .def_readonly("velocity", &PathPoint::velocity, "(4,) [m/s, rad/s]")
+      .def_readonly("acceleration", &PathPoint::acceleration, "(4,) [m/s^2, rad/s^2]")
+      .def_readonly("jerk", &PathPoint::jerk, "(4,) [m/s^3, rad/s^3]");
   py::class_<Path>(m, "Path", "A path as functions of time; after its end it holds.")
       .def(py::init<const WaypointPath&>(), py::arg("path"))
-      .def("at", &Path::at, py::arg("time"))
+      .def("at", &Path::at, py::arg("time"), "PathPoint at a time [s].")
       .def_property_readonly("end", &Path::end, "[s]")
       .def_property_readonly("peak_speed", &Path::peak_speed, "[m/s]")
       .def_property_readonly("peak_acceleration", &Path::peak_acceleration, "[m/s^2]");
@@ -56,7 +56,8 @@ void bind_jet(py::module_& m) {
                                           "Second-order jet identified in standardized variables "
                                           "T, D, U: T'' = thrust_scale (f + g v), "
                                           "v = U + B_UU U^2, f = c + K_T T + K_D D + K_TD T D + "
-                                          "K_TT T^2 + K_DD D^2, g the same with B.");
+                                          "K_TT T^2 + K_DD D^2, g = B + B_T T + B_D D + B_TD T D + "
+                                          "B_TT T^2 + B_DD D^2.");
   bind_keywords(turbine);
   using T = StandardizedTurbine;
   turbine.def_readwrite("thrust_mean", &T::thrust_mean, "[N]")
@@ -94,10 +95,11 @@ void bind_weights(py::module_& m) {
       .def_readwrite("attitude", &W::attitude, "(3,) roll, pitch, yaw")
       .def_readwrite("attitude_integral", &W::attitude_integral, "(3,)")
       .def_readwrite("angular_momentum", &W::angular_momentum, "(3,) axes of the body")
-      .def_readwrite("joint_displacement", &W::joint_displacement)
-      .def_readwrite("posture", &W::posture)
-      .def_readwrite("throttle_first", &W::throttle_first)
-      .def_readwrite("throttle_change", &W::throttle_change);
+      .def_readwrite("joint_displacement", &W::joint_displacement, "[1/rad^2]")
+      .def_readwrite("posture", &W::posture, "[1/rad^2]")
+      .def_readwrite("throttle_first", &W::throttle_first,
+                     "of the first block from the throttle that acts")
+      .def_readwrite("throttle_change", &W::throttle_change, "between blocks");
 }
 
 void bind_predictive_settings(py::module_& m) {
@@ -122,15 +124,15 @@ void bind_predictive_settings(py::module_& m) {
   settings.def_readwrite("period", &S::period, "of solves and joint set points [s]")
       .def_readwrite("throttle_every", &S::throttle_every, "solves")
       .def_readwrite("small_steps", &S::small_steps, "adding up to large_step")
-      .def_readwrite("large_steps", &S::large_steps)
+      .def_readwrite("large_steps", &S::large_steps, "how many follow")
       .def_readwrite("large_step", &S::large_step, "[s]")
       .def_readwrite("control_steps", &S::control_steps, "steps with joint inputs of their own")
       .def_readwrite("body", &S::body, "link whose attitude is controlled")
       .def_readwrite("joints", &S::joints, "names of the joints that are moved")
       .def_readwrite("joint_speed", &S::joint_speed, "largest [rad/s]; infinity: no bound")
-      .def_readwrite("integral", &S::integral)
-      .def_readwrite("model", &S::model)
-      .def_readwrite("weights", &S::weights);
+      .def_readwrite("integral", &S::integral, "PredictiveIntegral")
+      .def_readwrite("model", &S::model, "PredictiveModelOptions")
+      .def_readwrite("weights", &S::weights, "PredictiveWeights");
 }
 
 void bind_plant_settings(py::module_& m) {
@@ -146,8 +148,8 @@ void bind_plant_settings(py::module_& m) {
       .value("runge_kutta_4", ServoIntegrator::kRungeKutta4, "fourth order, robot and jets");
   py::class_<ServoPlantSettings> plant(m, "ServoPlantSettings", "A robot with position servos.");
   bind_keywords(plant);
-  plant.def_readwrite("servo", &ServoPlantSettings::servo)
-      .def_readwrite("integrator", &ServoPlantSettings::integrator)
+  plant.def_readwrite("servo", &ServoPlantSettings::servo, "ServoSettings")
+      .def_readwrite("integrator", &ServoPlantSettings::integrator, "ServoIntegrator")
       .def_readwrite("step", &ServoPlantSettings::step, "at most [s]");
   py::class_<FuelRate> fuel(m, "FuelRate", "Fuel of one jet: idle + per_newton T.");
   bind_keywords(fuel);
@@ -216,37 +218,39 @@ class PyController {
 void bind_prediction(py::module_& m) {
   using P = PredictionModel;
   py::class_<JetPrediction>(m, "JetPrediction", "Linear jet of a prediction.")
-      .def_readonly("constant", &JetPrediction::constant)
-      .def_readonly("per_thrust", &JetPrediction::per_thrust)
-      .def_readonly("per_rate", &JetPrediction::per_rate)
-      .def_readonly("per_variable", &JetPrediction::per_variable)
-      .def_readonly("static_gain", &JetPrediction::static_gain)
-      .def_readonly("thrust", &JetPrediction::thrust)
-      .def_readonly("thrust_rate", &JetPrediction::thrust_rate)
-      .def_readonly("variable", &JetPrediction::variable);
+      .def_readonly("constant", &JetPrediction::constant, "[N/s^2]")
+      .def_readonly("per_thrust", &JetPrediction::per_thrust, "[1/s^2]")
+      .def_readonly("per_rate", &JetPrediction::per_rate, "[1/s]")
+      .def_readonly("per_variable", &JetPrediction::per_variable, "[N/s^2]")
+      .def_readonly("static_gain", &JetPrediction::static_gain, "of thrust per v, held steady [N]")
+      .def_readonly("thrust", &JetPrediction::thrust, "of the linearization [N]")
+      .def_readonly("thrust_rate", &JetPrediction::thrust_rate, "of the linearization [N/s]")
+      .def_readonly("variable", &JetPrediction::variable, "v of the linearization");
   py::class_<P>(m, "PredictionModel", "The robot as the predictive controller sees it; body axes.")
-      .def_readonly("mass", &P::mass)
+      .def_readonly("mass", &P::mass, "[kg]")
       .def_readonly("world_R_body", &P::world_R_body, "(3, 3)")
-      .def_readonly("angular_velocity", &P::angular_velocity, "(3,)")
-      .def_readonly("inertia", &P::inertia, "(3, 3)")
-      .def_readonly("rpy_rate", &P::rpy_rate, "(3, 3) of the angular momentum")
-      .def_readonly("rpy", &P::rpy, "(3,)")
-      .def_readonly("weight", &P::weight, "(3,)")
-      .def_readonly("weight_per_rpy", &P::weight_per_rpy, "(3, 3)")
-      .def_readonly("force_of_thrust", &P::force_of_thrust, "(3, jets)")
-      .def_readonly("moment_of_thrust", &P::moment_of_thrust, "(3, jets)")
+      .def_readonly("angular_velocity", &P::angular_velocity, "(3,) [rad/s]")
+      .def_readonly("inertia", &P::inertia, "(3, 3) about the center of mass [kg m^2]")
+      .def_readonly("rpy_rate", &P::rpy_rate,
+                    "(3, 3) roll, pitch, yaw rates per angular momentum [1/(kg m^2)]")
+      .def_readonly("rpy", &P::rpy, "(3,) of the linearization [rad]")
+      .def_readonly("weight", &P::weight, "(3,) [N]")
+      .def_readonly("weight_per_rpy", &P::weight_per_rpy, "(3, 3) [N/rad]")
+      .def_readonly("force_of_thrust", &P::force_of_thrust, "(3, jets) [N/N]")
+      .def_readonly("moment_of_thrust", &P::moment_of_thrust, "(3, jets) [N m/N]")
       .def_readonly("force_of_joint", &P::force_of_joint, "(3, joints) [N/rad]")
       .def_readonly("moment_of_joint", &P::moment_of_joint, "(3, joints) [N m/rad]")
       .def_readonly("jets", &P::jets, "list of JetPrediction");
   py::class_<PredictionState>(m, "PredictionState", "What a prediction starts from.")
-      .def_readonly("com", &PredictionState::com)
-      .def_readonly("linear_momentum", &PredictionState::linear_momentum, "body axes")
-      .def_readonly("rpy", &PredictionState::rpy)
-      .def_readonly("angular_momentum", &PredictionState::angular_momentum, "body axes")
-      .def_readonly("thrust", &PredictionState::thrust)
-      .def_readonly("thrust_rate", &PredictionState::thrust_rate)
-      .def_readonly("com_integral", &PredictionState::com_integral)
-      .def_readonly("rpy_integral", &PredictionState::rpy_integral);
+      .def_readonly("com", &PredictionState::com, "(3,) world axes [m]")
+      .def_readonly("linear_momentum", &PredictionState::linear_momentum, "(3,) body axes [kg m/s]")
+      .def_readonly("rpy", &PredictionState::rpy, "(3,) of the body, unwrapped [rad]")
+      .def_readonly("angular_momentum", &PredictionState::angular_momentum,
+                    "(3,) body axes [kg m^2/s]")
+      .def_readonly("thrust", &PredictionState::thrust, "(jets,) [N]")
+      .def_readonly("thrust_rate", &PredictionState::thrust_rate, "(jets,) [N/s]")
+      .def_readonly("com_integral", &PredictionState::com_integral, "(3,) of its error [m s]")
+      .def_readonly("rpy_integral", &PredictionState::rpy_integral, "(3,) of its error [rad s]");
 }
 
 void bind_controller(py::module_& m) {
@@ -261,13 +265,19 @@ void bind_controller(py::module_& m) {
            py::arg("velocity"), py::arg("thrusts"), py::arg("thrust_rates"),
            "The k-th solve, at time k period; moves set points and throttles if it is solved.")
       .def_property_readonly(
-          "hessian", [](PyController& c) { return Eigen::MatrixXd(c.controller().qp().hessian()); })
+          "hessian", [](PyController& c) { return Eigen::MatrixXd(c.controller().qp().hessian()); },
+          "(n, n) of the last solve")
       .def_property_readonly(
           "gradient",
-          [](PyController& c) { return Eigen::VectorXd(c.controller().qp().gradient()); })
-      .def_property_readonly("lower", [](PyController& c) { return c.controller().lower(); })
-      .def_property_readonly("upper", [](PyController& c) { return c.controller().upper(); })
-      .def_property_readonly("result", [](PyController& c) { return c.controller().result(); })
+          [](PyController& c) { return Eigen::VectorXd(c.controller().qp().gradient()); },
+          "(n,) of the last solve")
+      .def_property_readonly(
+          "lower", [](PyController& c) { return c.controller().lower(); }, "(n,)")
+      .def_property_readonly(
+          "upper", [](PyController& c) { return c.controller().upper(); }, "(n,)")
+      .def_property_readonly(
+          "result", [](PyController& c) { return c.controller().result(); },
+          "BoxQpResult of the last solve")
       .def_property_readonly(
           "joint_columns", [](PyController& c) { return c.controller().qp().grid().joint_columns; },
           "first unknown of each block of joint displacements")
@@ -283,15 +293,20 @@ void bind_controller(py::module_& m) {
             return ends;
           },
           "of the prediction's steps from the solve [s]")
-      .def_property_readonly("prediction",
-                             [](PyController& c) { return c.controller().prediction(); })
-      .def_property_readonly("state", [](PyController& c) { return c.controller().state(); })
-      .def_property_readonly("set_points",
-                             [](PyController& c) { return c.controller().set_points(); })
+      .def_property_readonly(
+          "prediction", [](PyController& c) { return c.controller().prediction(); },
+          "PredictionModel of the last solve")
+      .def_property_readonly(
+          "state", [](PyController& c) { return c.controller().state(); },
+          "PredictionState of the last solve")
+      .def_property_readonly(
+          "set_points", [](PyController& c) { return c.controller().set_points(); },
+          "(joints,) [rad]")
       .def_property_readonly(
           "throttles", [](PyController& c) { return c.controller().throttles(); }, "[%]")
-      .def_property_readonly("variables",
-                             [](PyController& c) { return c.controller().variables(); });
+      .def_property_readonly(
+          "variables", [](PyController& c) { return c.controller().variables(); },
+          "(jets,) v of the throttles");
 }
 
 }  // namespace

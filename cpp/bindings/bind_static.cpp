@@ -26,9 +26,9 @@ void bind_material(py::module_& m) {
            }),
            "name"_a, "young_modulus"_a, "poisson_ratio"_a, "density"_a = 0.0,
            "yield_strength"_a = 0.0)
-      .def_readonly("name", &Material::name)
+      .def_readonly("name", &Material::name, "for people")
       .def_readonly("young_modulus", &Material::young_modulus, "Pa")
-      .def_readonly("poisson_ratio", &Material::poisson_ratio)
+      .def_readonly("poisson_ratio", &Material::poisson_ratio, "-1 to 0.5")
       .def_readonly("density", &Material::density, "kg/m3")
       .def_readonly("yield_strength", &Material::yield_strength, "Pa")
       .def("__repr__", [](const Material& material) {
@@ -159,14 +159,14 @@ void bind_result(py::module_& m) {
                     "yield strength over peak_stress; inf if nothing is stressed")
       .def_readonly("counts_for_peak", &StaticResult::counts_for_peak,
                     "(n) False where the peak stress is not read")
-      .def_readonly("left_out", &StaticResult::left_out)
+      .def_readonly("left_out", &StaticResult::left_out, "LeftOut")
       .def_readonly("exclusion_smallest", &StaticResult::exclusion_smallest,
                     "m, of the distances kept from borders")
       .def_readonly("exclusion_largest", &StaticResult::exclusion_largest, "m")
       .def_property_readonly("peak_resolved", &StaticResult::peak_resolved,
                              "False if the estimated error exceeds half of the peak stress")
       .def_readonly("residual", &StaticResult::residual, "relative, over the free components")
-      .def_readonly("equations", &StaticResult::equations)
+      .def_readonly("equations", &StaticResult::equations, "free components of displacement")
       .def_readonly("iterations", &StaticResult::iterations,
                     "of conjugate gradients; 0: solved by the factor");
   py::class_<NaturalModes>(m, "NaturalModes", "Free vibration of a part.")
@@ -189,7 +189,7 @@ void bind_result(py::module_& m) {
       .def_readonly("visited", &HistoryPeak::visited, "pairs that no bound ruled out");
   py::class_<UnitResponses>(m, "UnitResponses", "Answers of a part to unit loads.")
       .def_property_readonly("units", &UnitResponses::units, "how many unit loads")
-      .def_property_readonly("mesh", &UnitResponses::mesh)
+      .def_property_readonly("mesh", &UnitResponses::mesh, "TetMesh")
       .def("peak", &UnitResponses::peak, "history"_a, py::call_guard<py::gil_scoped_release>(),
            "Largest von Mises stress over a history (instants, units) of the units' factors.")
       .def("at", &UnitResponses::at, "factors"_a, py::call_guard<py::gil_scoped_release>(),

@@ -50,7 +50,7 @@ void bind_trim(py::module_& m) {
       .def_readonly("thrusts", &Trim::thrusts, "(actuators,) inside their ranges [N]")
       .def_readonly("residual", &Trim::residual,
                     "largest entry of the force and moment left over [N, N m]")
-      .def_readonly("iterations", &Trim::iterations)
+      .def_readonly("iterations", &Trim::iterations, "that it took")
       .def_readonly("reached", &Trim::reached, "whether the residual is within 1e-9");
   const TrimSettings defaults;
   m.def(

@@ -79,7 +79,7 @@ def rotation_from_quaternion(wxyz: Sequence[float] | Matrix) -> Matrix:
 
 
 def inverse(a_T_b: Matrix) -> Matrix:
-    """b_T_a (..., 4, 4) of poses (..., 4, 4)."""
+    """b_T_a (..., 4, 4) of poses a_T_b (..., 4, 4)."""
     b_T_a = np.zeros_like(a_T_b)
     b_R_a = np.swapaxes(a_T_b[..., :3, :3], -1, -2)
     b_T_a[..., :3, :3] = b_R_a

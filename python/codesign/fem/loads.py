@@ -180,7 +180,7 @@ Load = Force | Traction | Pressure | BearingLoad | AffineTraction | Acceleration
 
 @dataclass(frozen=True)
 class LoadCase:
-    """Loads that act together, and the safety factor that they ask for."""
+    """Loads that act together, and the safety factor (yield strength over peak stress) that they ask for."""
 
     name: str
     loads: Sequence[Load]

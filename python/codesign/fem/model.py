@@ -105,7 +105,7 @@ def resolve(mesh: TetMesh | None, where: Where) -> _core.Selection:
 
 
 def select_nodes(nodes: ArrayLike) -> Selection:
-    """Nodes by index."""
+    """Nodes (k,) by index."""
     return _Nodes(tuple(int(n) for n in np.asarray(nodes).ravel()))
 
 
@@ -135,7 +135,7 @@ def faces_in_box(lower: ArrayLike, upper: ArrayLike) -> Selection:
 
 
 def faces_with_normal(normal: ArrayLike, angle_deg: float = 1.0) -> Selection:
-    """Boundary triangles whose outward normal is within angle_deg of a direction."""
+    """Boundary triangles whose outward normal is within angle_deg of a direction (3,) of any length."""
     direction = np.asarray(normal, dtype=float)
     return _Rule(lambda mesh: _core.triangles_with_normal(mesh, direction, np.deg2rad(angle_deg)))
 

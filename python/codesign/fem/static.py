@@ -55,7 +55,7 @@ class Buckling:
 
     @property
     def lowest(self) -> float:
-        """The lowest factor; inf if there is none up to the limit."""
+        """The lowest factor on the load; inf if there is none up to the limit."""
         return float(self.factor[0]) if len(self.factor) else math.inf
 
     @classmethod
@@ -162,7 +162,7 @@ def solve_static(
     solver: Solver = "automatic",
     memory_limit: float = MEMORY_LIMIT,
 ) -> StaticResult:
-    """Displacement, stress and safety factor of one load case; arguments as in `StaticSystem`."""
+    """Displacement [m], stress [Pa] and safety factor of one load case; arguments as in `StaticSystem`."""
     system = StaticSystem(
         mesh,
         material,
@@ -188,7 +188,7 @@ def natural_frequencies(
 ) -> Modes:
     """The lowest modes of a part on its supports, or of a free one (then the rigid motions come first).
 
-    memory_limit: as in `StaticSystem`.
+    memory_limit [bytes]: as in `StaticSystem`.
     Raises: ValueError: no density, count < 1; MeshError, SolverError, MemoryLimitError.
     """
     return Modes.of(_core.natural_modes(mesh, material, native_supports(mesh, supports), count, memory_limit))
@@ -203,7 +203,7 @@ def buckling_factors(
     *,
     memory_limit: float = MEMORY_LIMIT,
 ) -> Buckling:
-    """The lowest buckling modes of a part on its supports under a load; memory_limit: as in `StaticSystem`.
+    """The lowest buckling modes of a part on its supports under a load; memory_limit [bytes]: as in `StaticSystem`.
 
     Raises: ValueError: count < 1; MeshError; SolverError: the part is not held, or the eigenvalues do not converge.
     """

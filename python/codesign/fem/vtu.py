@@ -18,7 +18,7 @@ from codesign.fem.model import TetMesh
 from codesign.fem.static import StaticResult
 from codesign.files import write_text
 
-QUADRATIC_TETRA = 24  # VTK's number of the cell type; its nodes are in our order
+QUADRATIC_TETRA = 24  # VTK's number of the cell type; its nodes have the order of TetMesh
 MIRRORED_NODES = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]  # of an element whose mirror image is to have a positive volume
 VOIGT = ([0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0])  # rows and columns of xx yy zz xy yz zx
 Array = npt.NDArray[Any]

@@ -100,7 +100,7 @@ def write_glb(
 ) -> None:
     """Binary glTF 2.0 in meters: meshes by name, placed by nodes (name, mesh name, root_T_node (4, 4) [m]).
 
-    glTF has y up: a root node turns our z there. Without normals in the file, viewers shade every triangle flat.
+    glTF has y up: a root node turns z there. Without normals in the file, viewers shade every triangle flat.
     Raises: ValueError if two nodes have one name.
     """
     from trimesh import Scene, Trimesh

@@ -68,14 +68,14 @@ class Edge:
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """A closed outline; the last edge ends at `start`."""
+    """A closed outline in a plane [mm]; the last edge ends at `start`."""
 
     start: tuple[float, float]
     edges: tuple[Edge, ...]
 
     @property
     def starts(self) -> list[tuple[float, float]]:
-        """The point from which each edge leaves."""
+        """The point (x, y) [mm] from which each edge leaves."""
         return [self.start, *(edge.end for edge in self.edges[:-1])]
 
     @property
@@ -91,7 +91,7 @@ class Loop:
 
     @property
     def area(self) -> float:
-        """Enclosed area, exact for arcs; positive if the loop turns left (counter-clockwise)."""
+        """Enclosed area [mm²], exact for arcs; positive if the loop turns left (counter-clockwise)."""
         area, (x0, y0) = 0.0, self.start
         for edge in self.edges:
             x1, y1 = edge.end
@@ -106,7 +106,7 @@ class Loop:
 
     @property
     def first_moments(self) -> tuple[float, float]:
-        """Integrals of x and y over the enclosed area, exact for arcs."""
+        """Integrals of x and y over the enclosed area [mm³], exact for arcs."""
         mx = my = 0.0
         x0, y0 = self.start
         for edge in self.edges:
@@ -270,13 +270,13 @@ def _cut_corner(before: tuple[float, float], corner: _Corner, after: tuple[float
 
 
 def circle(x: float, y: float, radius: float, *, face: str = "") -> Profile:
-    """A full circle; its seam lies at the smallest y, so that two circles about points on a line never share it."""
+    """A full circle [mm]; its seam lies at the smallest y: two circles about points on a line never share it."""
     start = (float(x), float(y) - radius)
     return Profile(Loop(start, (Edge(start, face, (float(x), float(y)), FULL_TURN),)))
 
 
 def polygon(*points: tuple[float, float], faces: Sequence[str] = ()) -> Profile:
-    """Straight-edged outline through `points`, counter-clockwise; `faces` names the sides leaving each point."""
+    """Straight-edged outline through `points` [mm], counter-clockwise; `faces` names the sides leaving each point."""
     names = list(faces) or [""] * len(points)
     path = Path(*points[0])
     for (x, y), name in zip(points[1:], names, strict=False):
@@ -285,7 +285,7 @@ def polygon(*points: tuple[float, float], faces: Sequence[str] = ()) -> Profile:
 
 
 def rectangle(x0: float, y0: float, x1: float, y1: float, *, radius: float = 0.0) -> Profile:
-    """Axis-parallel rectangle; `radius` rounds its four corners."""
+    """Axis-parallel rectangle from (x0, y0) to (x1, y1) [mm]; `radius` rounds its four corners."""
     if not radius:
         return polygon((x0, y0), (x1, y0), (x1, y1), (x0, y1))
     path = Path(0.5 * (x0 + x1), y0)

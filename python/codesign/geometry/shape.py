@@ -44,12 +44,12 @@ class Frame:
         return (b * f - c * e, c * d - a * f, a * e - b * d)
 
     def point(self, u: float, v: float, w: float = 0.0) -> Triple:
-        """Coordinates (u, v, w) of this frame as a point of the part."""
+        """Coordinates (u, v, w) of this frame [mm] as a point of the part [mm]."""
         x, y, z = (o + u * a + v * b + w * c for o, a, b, c in zip(self.origin, self.x, self.y, self.z, strict=True))
         return (x, y, z)
 
     def at(self, u: float, v: float, w: float = 0.0) -> Frame:
-        """The same axes with the origin at (u, v, w) of this frame."""
+        """The same axes with the origin at (u, v, w) of this frame [mm]."""
         return Frame(self.point(u, v, w), self.x, self.y)
 
 
@@ -79,7 +79,7 @@ class Shape:
         return Moved.by(self, motion)
 
     def rotated(self, axis: str, angle_deg: float, about: Triple = (0.0, 0.0, 0.0)) -> Shape:
-        """The solid turned about the axis "x", "y" or "z" through the point `about`."""
+        """The solid turned counter-clockwise about the axis "x", "y" or "z" through the point `about` [mm]."""
         k = np.array(_AXES[axis])
         skew = np.array([[0.0, -k[2], k[1]], [k[2], 0.0, -k[0]], [-k[1], k[0], 0.0]])
         angle = math.radians(angle_deg)
@@ -214,7 +214,7 @@ def cylinder(
 
 
 def stepped_hole(*steps: tuple[float, float, float], shoulder_face: str = "") -> Shape:
-    """Tool for a hole along z with counterbores: (radius, from, to) of each step, ascending, without gaps."""
+    """Tool for a hole along z with counterbores: (radius, from, to) [mm] of each step, ascending, without gaps."""
     outline = Path(steps[0][1], 0.0).line(steps[-1][2], 0.0)
     for k, (radius, low, high) in enumerate(reversed(steps)):
         outline = outline.line(high, radius, face=shoulder_face if k > 0 else "").line(low, radius)
@@ -235,7 +235,7 @@ def at_points(shape: Shape, points: Iterable[tuple[float, float]]) -> Shape:
 
 
 def polar(radius: float, *angles_deg: float) -> list[tuple[float, float]]:
-    """Points on a circle about the origin, for `at_points`."""
+    """Points (x, y) on a circle about the origin, in the unit of the radius, for `at_points`."""
     return [(radius * math.cos(math.radians(a)), radius * math.sin(math.radians(a))) for a in angles_deg]
 
 

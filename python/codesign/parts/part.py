@@ -99,7 +99,7 @@ class Part(ABC):
     def limit(
         self, parameter: str, minimum: float = -math.inf, maximum: float = math.inf, because: str = "valid range"
     ) -> None:
-        """Raises GeometryError, naming parameter, value, limit and reason, if the parameter is outside its limits."""
+        """Checks a parameter, in its own unit. Raises: GeometryError with its value, limit and reason."""
         value = getattr(self, parameter)
         infos = (f.metadata.get(_PARAMETER) for f in dataclasses.fields(self) if f.name == parameter)
         unit = next((info.unit for info in infos if info is not None), "mm")
@@ -174,7 +174,7 @@ class MirroredPart(Part):
         return self.original.through_holes()
 
     def fits(self) -> dict[float, str]:
-        """As the original."""
+        """Of the original: diameter [mm] -> tolerance."""
         return self.original.fits()
 
     def solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
@@ -187,7 +187,7 @@ class MirroredPart(Part):
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Those of the original."""
+        """Those of the original, in their own units."""
         return self.original.parameters
 
 

@@ -46,7 +46,7 @@ class Evaluation:
 
     @property
     def total_violation(self) -> float:
-        """Sum of the constraint violations; 0 for a feasible design."""
+        """Sum of the constraint violations, relative to their limits; 0 for a feasible design."""
         return sum(self.violations.values())
 
     def to_dict(self) -> dict[str, Any]:

@@ -26,7 +26,7 @@ class StudyData:
 
     source: the name or path it was loaded from (worker processes load it again from there).
     functions: own functions of an evaluation, `module:function`.
-    raw: the parsed TOML, on which design variables with `sets` act. identity: what decides a result.
+    raw: the parsed TOML, units in its keys, on which design variables with `sets` act. identity: what decides a result.
     """
 
     source: str
