@@ -186,3 +186,45 @@ def write_whole_study(folder: Path) -> tuple[dict[str, Any], Path]:
     raw = tomllib.loads(path.read_text() + WHOLE)
     complete(raw)
     return raw, path
+
+
+def predictive(raw: dict[str, Any]) -> dict[str, Any]:
+    """The same study under the other controller, on a path through way-points, without what its flights do not have."""
+    other = copy.deepcopy(raw)
+    flight = other["flight"]
+    joints = flight["joint_groups"][0]["joints"]
+    for key in ("drives", "drag", "tank"):
+        del flight[key]
+    for key in ("viscous_friction_n_m_per_rad_s", "coulomb_friction_n_m"):
+        del flight["joint_groups"][0][key]
+    flight |= {"controller": "mpc", "jet_model": "identified", "trajectory": "routed", "seeds": []}
+    flight["jet_models"] = {"identified": {
+        "thrust_mean_n": 108.0, "thrust_scale_n": 66.0, "throttle_mean_percent": 47.0, "throttle_scale_percent": 31.0,
+        "c": -0.46, "K_T": -8.1, "K_D": -6.2, "K_TD": 0.66, "K_TT": 1.7, "K_DD": -0.48, "B": 8.8, "B_T": -1.0,
+        "B_D": -0.59, "B_TD": 0.52, "B_TT": -0.42, "B_DD": 0.1, "B_UU": 0.02, "max_throttle_percent": 100.0,
+        "throttle_gain": 50.0,
+    }}  # fmt: skip
+    three = [1.0, 1.0, 1.0]
+    flight["mpc"] = {
+        "body": "body", "joints": joints[:4], "throttle_every": 5, "small_steps": 4, "large_steps": 3,
+        "large_step_s": 0.1, "control_steps": 4, "joint_speed_rad_s": 2.0, "integral": "accumulate",
+        "gravity_coupling": True, "jet_dynamics": True, "varying": True,
+        "weights": dict.fromkeys(
+            ("com", "com_integral", "linear_momentum", "attitude", "attitude_integral", "angular_momentum"), three
+        ) | dict.fromkeys(("joint_displacement", "posture", "throttle_change", "throttle_first"), 1000.0),
+        "weight_exponents": dict.fromkeys(
+            ("com", "com_integral", "linear_momentum", "attitude", "attitude_integral", "angular_momentum",
+             "joint_displacement", "throttle"), 0.0
+        ),
+    }  # fmt: skip
+    group = {"joints": joints, "stiffness_n_m_rad": 500.0, "damping_ratio": 0.3, "passive_n_m_s_rad": 1.0}
+    flight["servo"] = {"integrator": "implicit", "step_s": 0.004, "groups": [group]}
+    flight["fuel"] = {"idle_kg_s": 1e-3, "kg_n_s": 1e-5}
+    point = {"m": [0.5, 0.0, 0.5], "yaw_deg": 10.0, "duration_s": 2.0, "rest_s": 0.5}
+    other["trajectories"] = {"routed": {
+        "label": "routed", "kind": "stop", "rest_s": 0.1, "duration_s": 0.08, "waypoints": [point],
+        "pulses": [{"at_s": 0.01, "for_s": 0.02, "force_n": [1.0, 0.0, 0.0], "moment_n_m": [0.0, 1.0, 0.0]}],
+        "disturbances": raw["trajectories"]["gusty"]["disturbances"] | {"wind_m_s": [0.0, 0.0, 0.0]},
+    }}  # fmt: skip
+    other["validation"]["trajectories"] = ["routed"]
+    return other

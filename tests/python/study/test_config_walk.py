@@ -20,7 +20,7 @@ from codesign.robot.description import RobotDescription
 from codesign.study.config import StudyConfig
 from codesign.study.load_config import LOAD_KINDS
 from codesign.study.loading import study_from
-from whole_study import write_whole_study
+from whole_study import predictive, write_whole_study
 
 Place = tuple[str | int, ...]
 # Of a load: one kind; of a part: one load case or several; of a change: a joint or a link.
@@ -28,8 +28,9 @@ EITHER = (
     *LOAD_KINDS, "face", "interface", "point_mm", "loads", "flown", "cases", "min", "max", "step", "values", "choices",
     "joint", "link",
 )  # fmt: skip
-PREDICTIVE = (  # of the other controller and its paths: not walked yet
-    "mpc", "servo", "fuel", "jet_models", "waypoints", "kind", "rest_s", "duration_s", "pulses",
+ONE_CONTROLLER = (  # has them; the other's study does without
+    "mpc", "servo", "fuel", "jet_models", "waypoints", "kind", "rest_s", "duration_s", "pulses", "windows",
+    "drives", "drag", "tank", "viscous_friction_n_m_per_rad_s", "coulomb_friction_n_m",
 )  # fmt: skip
 NAN, INFINITY = math.nan, math.inf
 
@@ -49,7 +50,7 @@ def places(kind: kinds.Type, node: Any, place: Place = ()) -> Iterator[tuple[Pla
         yield place, kind
     if isinstance(kind, kinds.StructType):
         for field in kind.fields:
-            if field.encode_name in (*EITHER, *PREDICTIVE) and field.encode_name not in node:
+            if field.encode_name in (*EITHER, *ONE_CONTROLLER) and field.encode_name not in node:
                 continue
             assert field.encode_name in node, f"{place}: the template lacks {field.encode_name}"
             yield from places(field.type, node[field.encode_name], (*place, field.encode_name))
@@ -104,26 +105,43 @@ def fly(study: Study) -> None:
             json.dumps([document, objective_families(logs)], allow_nan=False)
 
 
+def faults(walked: list[tuple[Place, kinds.Type]], raw: dict[str, Any], path: Path) -> Iterator[str]:
+    """What is neither flown nor refused by one line that helps."""
+    for place, kind in walked:
+        for value in wrong_values(kind, at(raw, place)):
+            try:
+                study = study_from(with_value(raw, place, value), path, Study)
+                if not sensible(value):
+                    yield f"{place} = {value!r} was accepted"
+                fly(study)
+            except StudyError as error:
+                if not helps(str(error), path, place, value):
+                    yield f"{place} = {value!r}: {error}"
+            except Exception as error:
+                yield f"{place} = {value!r}: {type(error).__name__}: {error}"
+
+
 def test_every_key_is_accepted_or_refused_by_one_line(template, monkeypatch) -> None:
     raw, path = template
     monkeypatch.setattr(RobotDescription, "load", functools.cache(RobotDescription.load))
     study_from(raw, path, Study)
     walked = list(places(kinds.type_info(StudyConfig), raw))
     assert len({place for place, _ in walked}) > 180
-    faults = []
-    for place, kind in walked:
-        for value in wrong_values(kind, at(raw, place)):
-            try:
-                study = study_from(with_value(raw, place, value), path, Study)
-                if not sensible(value):
-                    faults.append(f"{place} = {value!r} was accepted")
-                fly(study)
-            except StudyError as error:
-                if not helps(str(error), path, place, value):
-                    faults.append(f"{place} = {value!r}: {error}")
-            except Exception as error:
-                faults.append(f"{place} = {value!r}: {type(error).__name__}: {error}")
-    assert not faults, "\n".join(faults)
+    found = list(faults(walked, raw, path))
+    assert not found, "\n".join(found)
+
+
+def test_so_is_every_key_of_the_other_controller(template, monkeypatch) -> None:
+    raw, path = template
+    monkeypatch.setattr(RobotDescription, "load", functools.cache(RobotDescription.load))
+    other = predictive(raw)
+    fly(study_from(other, path, Study))
+    known = {place for place, _ in places(kinds.type_info(StudyConfig), raw)}
+    walked = [(place, kind) for place, kind in places(kinds.type_info(StudyConfig), other) if place not in known]
+    keys = {step for place in known | {place for place, _ in walked} for step in place}
+    assert set(ONE_CONTROLLER) <= keys
+    found = list(faults(walked, other, path))
+    assert not found, "\n".join(found)
 
 
 def helps(message: str, path: Path, place: Place, value: Any) -> bool:
