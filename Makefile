@@ -29,7 +29,7 @@ help:
 	@echo 'make check  format, lint, types, stubs, layering (part of make test)'
 	@echo 'make test-lowest  the main jobs with the lowest versions of all packages that pyproject.toml allows'
 	@echo 'make test-consumers  exported robots in Drake and USD, parts of build123d, searches of numba (700 MB the first time)'
-	@echo 'make coverage  the tests, with the share of the Python lines that they reach'
+	@echo 'make coverage  the tests, with the share of the lines of Python and of the C++ libraries that they reach'
 	@echo 'make lock   write the installed versions into constraints.txt, which the set-up uses'
 	@echo 'make stubs  regenerate python/codesign/_core/*.pyi'
 	@echo 'make format apply clang-format and ruff'
@@ -94,7 +94,11 @@ test-consumers: $(VENV)/test.stamp
 	$(BIN)/python -m pytest tests/consumers tests/python/robot/test_mjcf.py tests/python/robot/test_sdf.py
 
 coverage: $(VENV)/test.stamp
-	$(PYTEST) --cov --cov-report=term:skip-covered --cov-report=html:build/coverage
+	cmake --preset coverage >/dev/null
+	cmake --build --preset coverage
+	ctest --preset coverage -j $(JOBS) >/dev/null
+	$(PYTEST) --cov --cov-report=term:skip-covered --cov-report=html:build/coverage/python
+	$(BIN)/python scripts/cpp_coverage.py build/coverage
 
 lock: $(VENV)/test.stamp
 	scripts/lock > build/constraints.txt

@@ -23,6 +23,10 @@ function(codesign_library name)
                          $<$<BOOL:${CODESIGN_WARNINGS_AS_ERRORS}>:-Werror>)
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/cpp>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/codesign>)
+  if(CODESIGN_COVERAGE)
+    target_compile_options(${name} PRIVATE --coverage -fprofile-update=atomic)
+    target_link_options(${name} PUBLIC --coverage)
+  endif()
   add_library(codesign::${name} ALIAS ${name})
 endfunction()
 
