@@ -25,7 +25,7 @@ MODES = (1, 6, 20)
 
 
 def main() -> None:
-    """One row a part and number of modes."""
+    """One row per part and number of modes."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=Path, default=BUILT.with_name("benchmark_eigensolver"))
     parser.add_argument("--repeats", type=int, default=5)

@@ -54,7 +54,7 @@ def whole(case: _core.PartCase, repeats: int) -> tuple[_core.PartAnalysis, float
 
 
 def main() -> None:
-    """One row a part: seconds of both, and what ours saves of the part's time."""
+    """One row per part: seconds of both, and what the own one saves of the part's time."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=Path, default=BUILT)
     parser.add_argument("--repeats", type=int, default=7)

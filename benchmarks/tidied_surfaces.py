@@ -42,7 +42,7 @@ def row(part: Any, settings: Any) -> tuple[float, int, int, float, float]:
 
 
 def main() -> None:
-    """One row a part and design, both ways."""
+    """One row per part and design, both ways."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--designs", type=int, default=8)
     arguments = parser.parse_args()

@@ -141,13 +141,17 @@ def point(column: float, row: float) -> tuple[float, float]:
     return round((column - LEFT) * COLUMN, 1), round((row + 0.5) * ROW, 1)
 
 
-def drawn_arrow(upper: str, lower: str) -> str:
-    """A line from the foot of one box to the head of another."""
+def ends(upper: str, lower: str) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Columns and rows of an arrow from the foot of one box to the head of another."""
     (xu, yu), (xl, yl) = PLACES[upper], PLACES[lower]
     start = xl if upper in WIDE else xu if lower in WIDE else clamped(xl, upper)
-    end = clamped(start if upper in WIDE else xu, lower)
-    a, b = point(start, yu + HALF_HEIGHT), point(end, yl - HALF_HEIGHT)
-    return f'<line x1="{a[0]}" y1="{a[1]}" x2="{b[0]}" y2="{b[1] - 3}" marker-end="url(#head)"/>'
+    return (start, yu + HALF_HEIGHT), (clamped(start if upper in WIDE else xu, lower), yl - HALF_HEIGHT)
+
+
+def drawn_arrow(upper: str, lower: str) -> str:
+    """A line with a head."""
+    (x1, y1), (x2, y2) = (point(*end) for end in ends(upper, lower))
+    return f'<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2 - 3}" marker-end="url(#head)"/>'
 
 
 def drawn_box(box: str, words: str, title: str) -> str:
@@ -161,8 +165,8 @@ def drawn_box(box: str, words: str, title: str) -> str:
     top = y - 7 * len(lines) + 4
     texts = [f'<text class="name" x="{x}" y="{top}">{escape(title)}</text>']
     texts += [f'<text x="{x}" y="{top + 14 * k}">{escape(line)}</text>' for k, line in enumerate(lines, 1)]
-    shape = f'<rect class="box" x="{x - w / 2:.1f}" y="{y - h / 2:.1f}" width="{w:.1f}" height="{h:.1f}" rx="5" fill="{color}"/>'
-    return shape + "".join(texts)
+    place = f'x="{x - w / 2:.1f}" y="{y - h / 2:.1f}" width="{w:.1f}" height="{h:.1f}"'
+    return f'<rect class="box" {place} rx="5" fill="{color}"/>' + "".join(texts)
 
 
 def picture() -> str:

@@ -1,4 +1,4 @@
-"""Evaluations on a Dask cluster: `dask.distributed` moves tasks, our own worker processes run them.
+"""Evaluations on a Dask cluster: `dask.distributed` moves tasks, worker processes as of the pool run them.
 
 Each thread of a Dask worker keeps one worker process of codesign.execution.pool, so limits, crashes and hangs mean the
 same as in a local run and never end the Dask worker. Dask runs the tasks of a lost worker again on another.

@@ -330,7 +330,7 @@ def _kill_group(process: subprocess.Popen[bytes]) -> None:
 
 
 def _exit_code(process: subprocess.Popen[bytes]) -> int | None:
-    """Exit code, negative for a signal; None if it lives on. Does not reap, so the group's number stays ours."""
+    """Exit code, negative for a signal; None if it lives on. Does not reap: the group keeps its number."""
     for _ in range(100):
         info = os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
         if info is not None:

@@ -84,7 +84,7 @@ def limit_memory(limit_mib: int) -> None:
     if limit_mib <= 0:
         return
     with contextlib.suppress(OSError, ValueError):
-        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123 - not a path of ours
+        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123 - a file of the kernel
             pages = int(file.read().split()[0])
         ceiling = pages * resource.getpagesize() + limit_mib * MEBIBYTE
         resource.setrlimit(resource.RLIMIT_AS, (ceiling, resource.getrlimit(resource.RLIMIT_AS)[1]))

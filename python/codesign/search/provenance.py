@@ -24,9 +24,9 @@ SEARCH = Path(__file__).parent
 
 
 def search_identity(algorithm: str) -> Identity:
-    """What decides which designs a search asks for, besides its settings: its own code if it is not ours, libraries.
+    """What decides which designs a search asks for, besides its settings: libraries, and code of other packages.
 
-    Our own code counts by what it does: a continued run must ask for the designs that are stored, in their order.
+    Searches of this package count by what they do: a continued run must ask for the stored designs in their order.
     """
     module = importlib.import_module(search_address(algorithm).partition(":")[0])
     file = Path(str(module.__file__))

@@ -17,7 +17,7 @@ from codesign.errors import StoreError
 
 DATABASE = "run.sqlite"
 LOCK = "run.lock"
-APPLICATION_ID = 0x636F6473  # "cods": tells our files from other SQLite files
+APPLICATION_ID = 0x636F6473  # "cods": tells stores from other SQLite files
 VERSION = 3
 EVALUATIONS = """
 CREATE TABLE evaluations (

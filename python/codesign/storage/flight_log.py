@@ -95,7 +95,7 @@ def flown_metadata(log: dyn.FlightLog, settings: dyn.FlightSettings, more: dict[
 
 
 def write_csv(columns: Sequence[Column], path: str | os.PathLike[str]) -> None:
-    """One line a sample; numbers read back exactly."""
+    """One line per sample; numbers read back exactly."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([column.name for column in columns])

@@ -83,7 +83,7 @@ class RunStore:
     def open(cls, out: str | Path) -> RunStore:
         """An existing run, open for writing; rows that a dead writer left as running are queued again.
 
-        Raises: StoreError if there is none, another process writes it, or it is not ours or newer than this program.
+        Raises: StoreError if there is none, another process writes it, or it is no store or one of a newer program.
         """
         path = existing(out)
         store = cls._connect(path, lock_folder(path.parent))
@@ -127,7 +127,7 @@ class RunStore:
         return cls(path, connection, lock)._checked()
 
     def _checked(self) -> RunStore:
-        """Itself, if the file is one of ours; closed otherwise. A foreign file is not changed."""
+        """Itself, if the file is a store; closed otherwise. A foreign file is not changed."""
         try:
             self._check_version()
             if self._lock is not None:

@@ -16,8 +16,8 @@ class Coordinates:
     """Grid points as rows of numbers whose Euclidean distance is a distance of designs.
 
     A variable that takes numbers has one column, the center of its cell (index + 1/2) / levels, so a step of the grid
-    means the same for every variable. A named choice has a column a name, of which one is 1/sqrt(2) and the others 0:
-    any two names are one apart. `variable`: (columns,) number of the variable that a column belongs to.
+    means the same for every variable. A named choice has a column for each name, of which one is 1/sqrt(2) and
+    the others 0: any two names are one apart. `variable`: (columns,) number of the variable that a column belongs to.
     """
 
     def __init__(self, space: DesignSpace) -> None:

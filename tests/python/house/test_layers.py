@@ -36,7 +36,11 @@ def test_an_import_of_a_higher_wing_is_found(tmp_path):
         ("fem/a.cpp", '"dynamics/b.hpp"', "fem must not include dynamics/b.hpp"),
         ("dynamics/a.cpp", '"fem/mesh/b.hpp"', "dynamics must not include fem/mesh/b.hpp"),
         ("dynamics/a.hpp", '"dynamics/flight/b.hpp"', "dynamics must not include dynamics/flight/b.hpp"),
-        ("dynamics/predictive/a.cpp", '"dynamics/flight/b.hpp"', "dynamics/predictive must not include dynamics/flight"),
+        (
+            "dynamics/predictive/a.cpp",
+            '"dynamics/flight/b.hpp"',
+            "dynamics/predictive must not include dynamics/flight",
+        ),
         ("errors.hpp", '"dynamics/b.hpp"', "cpp must not include dynamics/b.hpp"),
         ("fem/la/a.hpp", "<cholmod.h>", "cholmod.h belongs into sources of fem/la"),
         ("dynamics/a.cpp", "<CGAL/Mesh_3.h>", "CGAL/Mesh_3.h belongs into sources of"),
