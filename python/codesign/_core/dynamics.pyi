@@ -251,14 +251,19 @@ class WaypointPath:
     """
     A path through way-points.
     """
-
-    kind: WaypointKind
     def __copy__(self) -> WaypointPath: ...
     def __deepcopy__(self, arg0: dict) -> WaypointPath: ...
     def __getstate__(self) -> dict: ...
     def __init__(self, **kwargs) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def kind(self) -> WaypointKind:
+        """
+        WaypointKind
+        """
+    @kind.setter
+    def kind(self, arg0: WaypointKind) -> None: ...
     @property
     def start(self) -> float:
         """
@@ -281,12 +286,12 @@ class PathPoint:
     @property
     def acceleration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
         """
-        (4,)
+        (4,) [m/s^2, rad/s^2]
         """
     @property
     def jerk(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
         """
-        (4,)
+        (4,) [m/s^3, rad/s^3]
         """
     @property
     def value(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
@@ -296,7 +301,7 @@ class PathPoint:
     @property
     def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 1]"]:
         """
-        (4,)
+        (4,) [m/s, rad/s]
         """
 
 class Path:
@@ -304,7 +309,10 @@ class Path:
     A path as functions of time; after its end it holds.
     """
     def __init__(self, path: WaypointPath) -> None: ...
-    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> PathPoint: ...
+    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> PathPoint:
+        """
+        PathPoint at a time [s].
+        """
     @property
     def end(self) -> float:
         """
@@ -362,7 +370,7 @@ class Pulse:
 
 class StandardizedTurbine:
     """
-    Second-order jet identified in standardized variables T, D, U: T'' = thrust_scale (f + g v), v = U + B_UU U^2, f = c + K_T T + K_D D + K_TD T D + K_TT T^2 + K_DD D^2, g the same with B.
+    Second-order jet identified in standardized variables T, D, U: T'' = thrust_scale (f + g v), v = U + B_UU U^2, f = c + K_T T + K_D D + K_TD T D + K_TT T^2 + K_DD D^2, g = B + B_T T + B_D D + B_TD T D + B_TT T^2 + B_DD D^2.
     """
     def __copy__(self) -> StandardizedTurbine: ...
     def __deepcopy__(self, arg0: dict) -> StandardizedTurbine: ...
@@ -523,7 +531,10 @@ class PredictiveWeights:
     @com_integral.setter
     def com_integral(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
     @property
-    def joint_displacement(self) -> float: ...
+    def joint_displacement(self) -> float:
+        """
+        [1/rad^2]
+        """
     @joint_displacement.setter
     def joint_displacement(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
@@ -534,15 +545,24 @@ class PredictiveWeights:
     @linear_momentum.setter
     def linear_momentum(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]) -> None: ...
     @property
-    def posture(self) -> float: ...
+    def posture(self) -> float:
+        """
+        [1/rad^2]
+        """
     @posture.setter
     def posture(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def throttle_change(self) -> float: ...
+    def throttle_change(self) -> float:
+        """
+        between blocks
+        """
     @throttle_change.setter
     def throttle_change(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def throttle_first(self) -> float: ...
+    def throttle_first(self) -> float:
+        """
+        of the first block from the throttle that acts
+        """
     @throttle_first.setter
     def throttle_first(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
@@ -617,10 +637,6 @@ class PredictiveSettings:
     """
     Multi-rate predictive control.
     """
-
-    integral: PredictiveIntegral
-    model: PredictiveModelOptions
-    weights: PredictiveWeights
     def __copy__(self) -> PredictiveSettings: ...
     def __deepcopy__(self, arg0: dict) -> PredictiveSettings: ...
     def __getstate__(self) -> dict: ...
@@ -641,6 +657,13 @@ class PredictiveSettings:
         """
     @control_steps.setter
     def control_steps(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def integral(self) -> PredictiveIntegral:
+        """
+        PredictiveIntegral
+        """
+    @integral.setter
+    def integral(self, arg0: PredictiveIntegral) -> None: ...
     @property
     def joint_speed(self) -> float:
         """
@@ -663,9 +686,19 @@ class PredictiveSettings:
     @large_step.setter
     def large_step(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def large_steps(self) -> int: ...
+    def large_steps(self) -> int:
+        """
+        how many follow
+        """
     @large_steps.setter
     def large_steps(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def model(self) -> PredictiveModelOptions:
+        """
+        PredictiveModelOptions
+        """
+    @model.setter
+    def model(self, arg0: PredictiveModelOptions) -> None: ...
     @property
     def period(self) -> float:
         """
@@ -687,6 +720,13 @@ class PredictiveSettings:
         """
     @throttle_every.setter
     def throttle_every(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def weights(self) -> PredictiveWeights:
+        """
+        PredictiveWeights
+        """
+    @weights.setter
+    def weights(self, arg0: PredictiveWeights) -> None: ...
 
 class ServoSettings:
     """
@@ -759,15 +799,26 @@ class ServoPlantSettings:
     """
     A robot with position servos.
     """
-
-    integrator: ServoIntegrator
-    servo: ServoSettings
     def __copy__(self) -> ServoPlantSettings: ...
     def __deepcopy__(self, arg0: dict) -> ServoPlantSettings: ...
     def __getstate__(self) -> dict: ...
     def __init__(self, **kwargs) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def integrator(self) -> ServoIntegrator:
+        """
+        ServoIntegrator
+        """
+    @integrator.setter
+    def integrator(self, arg0: ServoIntegrator) -> None: ...
+    @property
+    def servo(self) -> ServoSettings:
+        """
+        ServoSettings
+        """
+    @servo.setter
+    def servo(self, arg0: ServoSettings) -> None: ...
     @property
     def step(self) -> float:
         """
@@ -862,7 +913,10 @@ class BoxQpResult:
         (n,) H x + g at the solution: >= 0 where x is at its lower bound, <= 0 at its upper, 0 elsewhere
         """
     @property
-    def status(self) -> QpStatus: ...
+    def status(self) -> QpStatus:
+        """
+        QpStatus
+        """
     @property
     def x(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
@@ -889,7 +943,10 @@ class BoxQpSolver:
         As solve_box_qp, warm-started from the last call.
         """
     @property
-    def size(self) -> int: ...
+    def size(self) -> int:
+        """
+        largest number of unknowns
+        """
 
 class Integrator:
     """
@@ -933,14 +990,19 @@ class ContactPoint:
     """
     A point monitored for ground contact.
     """
-
-    frame: str
     def __copy__(self) -> ContactPoint: ...
     def __deepcopy__(self, arg0: dict) -> ContactPoint: ...
     def __getstate__(self) -> dict: ...
     def __init__(self, **kwargs) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def frame(self) -> str:
+        """
+        name
+        """
+    @frame.setter
+    def frame(self, arg0: str) -> None: ...
     @property
     def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -960,35 +1022,59 @@ class CommandWindow:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     @property
-    def end(self) -> float: ...
+    def end(self) -> float:
+        """
+        [s]
+        """
     @end.setter
     def end(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def front(self) -> float: ...
+    def front(self) -> float:
+        """
+        -1 to 1, of the speed
+        """
     @front.setter
     def front(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def left(self) -> float: ...
+    def left(self) -> float:
+        """
+        -1 to 1, of the speed
+        """
     @left.setter
     def left(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def pitch(self) -> float: ...
+    def pitch(self) -> float:
+        """
+        -1 to 1, of the speed
+        """
     @pitch.setter
     def pitch(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def roll(self) -> float: ...
+    def roll(self) -> float:
+        """
+        -1 to 1, of the speed
+        """
     @roll.setter
     def roll(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def start(self) -> float: ...
+    def start(self) -> float:
+        """
+        [s]
+        """
     @start.setter
     def start(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def up(self) -> float: ...
+    def up(self) -> float:
+        """
+        -1 to 1, of the speed
+        """
     @up.setter
     def up(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def yaw(self) -> float: ...
+    def yaw(self) -> float:
+        """
+        -1 to 1, of the speed
+        """
     @yaw.setter
     def yaw(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
@@ -1197,35 +1283,59 @@ class Weights:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     @property
-    def constant_inertia(self) -> float: ...
+    def constant_inertia(self) -> float:
+        """
+        of the task that keeps the inertia constant
+        """
     @constant_inertia.setter
     def constant_inertia(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def joint_velocity(self) -> float: ...
+    def joint_velocity(self) -> float:
+        """
+        of joint velocities
+        """
     @joint_velocity.setter
     def joint_velocity(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def momentum(self) -> float: ...
+    def momentum(self) -> float:
+        """
+        of the momentum's squared error
+        """
     @momentum.setter
     def momentum(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def posture(self) -> float: ...
+    def posture(self) -> float:
+        """
+        of the distance from the initial posture
+        """
     @posture.setter
     def posture(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def regularization(self) -> float: ...
+    def regularization(self) -> float:
+        """
+        of everything, so that the solution is unique
+        """
     @regularization.setter
     def regularization(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def thrust_rate(self) -> float: ...
+    def thrust_rate(self) -> float:
+        """
+        of thrust rates
+        """
     @thrust_rate.setter
     def thrust_rate(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def thrust_symmetry(self) -> float: ...
+    def thrust_symmetry(self) -> float:
+        """
+        of differences within symmetry_pairs
+        """
     @thrust_symmetry.setter
     def thrust_symmetry(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def torque(self) -> float: ...
+    def torque(self) -> float:
+        """
+        of torques, in the torque QP
+        """
     @torque.setter
     def torque(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
@@ -1300,8 +1410,6 @@ class JointGroup:
     """
     Joints of one term of the velocity objective.
     """
-
-    name: str
     def __copy__(self) -> JointGroup: ...
     def __deepcopy__(self, arg0: dict) -> JointGroup: ...
     def __getstate__(self) -> dict: ...
@@ -1309,11 +1417,24 @@ class JointGroup:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     @property
-    def joints(self) -> list[str]: ...
+    def joints(self) -> list[str]:
+        """
+        names
+        """
     @joints.setter
     def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
     @property
-    def weight(self) -> float: ...
+    def name(self) -> str:
+        """
+        of the group
+        """
+    @name.setter
+    def name(self, arg0: str) -> None: ...
+    @property
+    def weight(self) -> float:
+        """
+        of its velocity in the objective
+        """
     @weight.setter
     def weight(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
@@ -1447,8 +1568,6 @@ class Actuator:
     """
     What pushes the robot along a line fixed in a frame: a jet, a propeller.
     """
-
-    frame: str
     def __copy__(self) -> Actuator: ...
     def __deepcopy__(self, arg0: dict) -> Actuator: ...
     def __getstate__(self) -> dict: ...
@@ -1469,6 +1588,13 @@ class Actuator:
         """
     @dynamics.setter
     def dynamics(self, arg0: RateIntegrator | FirstOrderLag | Turbine | StandardizedTurbine) -> None: ...
+    @property
+    def frame(self) -> str:
+        """
+        name
+        """
+    @frame.setter
+    def frame(self, arg0: str) -> None: ...
     @property
     def reaction(self) -> float:
         """
@@ -1537,7 +1663,10 @@ class Disturbances:
     @mass_scale.setter
     def mass_scale(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
-    def seed(self) -> int: ...
+    def seed(self) -> int:
+        """
+        of gusts and drawn deviations
+        """
     @seed.setter
     def seed(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     @property
@@ -1690,8 +1819,6 @@ class DragArea:
     """
     What air drags: force -0.5 rho area |u| u, u against the air.
     """
-
-    frame: str
     def __copy__(self) -> DragArea: ...
     def __deepcopy__(self, arg0: dict) -> DragArea: ...
     def __getstate__(self) -> dict: ...
@@ -1706,6 +1833,13 @@ class DragArea:
     @area.setter
     def area(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
+    def frame(self) -> str:
+        """
+        name
+        """
+    @frame.setter
+    def frame(self, arg0: str) -> None: ...
+    @property
     def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
         (3,) in the frame [m]
@@ -1717,8 +1851,6 @@ class Tank:
     """
     Fuel on board, part of its link's inertia at the start; the controller does not see it go.
     """
-
-    frame: str
     def __copy__(self) -> Tank: ...
     def __deepcopy__(self, arg0: dict) -> Tank: ...
     def __getstate__(self) -> dict: ...
@@ -1732,6 +1864,13 @@ class Tank:
         """
     @consumption.setter
     def consumption(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def frame(self) -> str:
+        """
+        name
+        """
+    @frame.setter
+    def frame(self, arg0: str) -> None: ...
     @property
     def fuel(self) -> float:
         """
@@ -1751,20 +1890,6 @@ class FlightSettings:
     """
     Everything that decides a flight besides the robot; SI units. Vectors over joints have the order of `joints`, vectors over jets that of `actuators`. Assign lists and arrays whole.
     """
-
-    command_speeds: CommandSpeeds
-    controller: Controller
-    delays: Delays
-    disturbances: Disturbances
-    failure: FailureLimits
-    friction: Friction
-    gains: Gains
-    integrator: Integrator
-    limits: Limits
-    predictive: PredictiveSettings
-    reference: ReferenceSettings
-    servo_plant: ServoPlantSettings
-    weights: Weights
     def __copy__(self) -> FlightSettings: ...
     def __deepcopy__(self, arg0: dict) -> FlightSettings: ...
     def __getstate__(self) -> dict: ...
@@ -1797,9 +1922,40 @@ class FlightSettings:
     @base_pose.setter
     def base_pose(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]) -> None: ...
     @property
-    def contact_points(self) -> list[ContactPoint]: ...
+    def command_speeds(self) -> CommandSpeeds:
+        """
+        of full commands
+        """
+    @command_speeds.setter
+    def command_speeds(self, arg0: CommandSpeeds) -> None: ...
+    @property
+    def contact_points(self) -> list[ContactPoint]:
+        """
+        list of ContactPoint
+        """
     @contact_points.setter
     def contact_points(self, arg0: collections.abc.Sequence[ContactPoint]) -> None: ...
+    @property
+    def controller(self) -> Controller:
+        """
+        Controller
+        """
+    @controller.setter
+    def controller(self, arg0: Controller) -> None: ...
+    @property
+    def delays(self) -> Delays:
+        """
+        of what the controllers ask for
+        """
+    @delays.setter
+    def delays(self, arg0: Delays) -> None: ...
+    @property
+    def disturbances(self) -> Disturbances:
+        """
+        of the plant
+        """
+    @disturbances.setter
+    def disturbances(self, arg0: Disturbances) -> None: ...
     @property
     def drag(self) -> list[DragArea]:
         """
@@ -1815,12 +1971,33 @@ class FlightSettings:
     @duration.setter
     def duration(self, arg0: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
     @property
+    def failure(self) -> FailureLimits:
+        """
+        where the flight is lost
+        """
+    @failure.setter
+    def failure(self, arg0: FailureLimits) -> None: ...
+    @property
+    def friction(self) -> Friction:
+        """
+        of the joints' drives
+        """
+    @friction.setter
+    def friction(self, arg0: Friction) -> None: ...
+    @property
     def fuel(self) -> FuelRate:
         """
         of each jet
         """
     @fuel.setter
     def fuel(self, arg0: FuelRate) -> None: ...
+    @property
+    def gains(self) -> Gains:
+        """
+        of all loops
+        """
+    @gains.setter
+    def gains(self, arg0: Gains) -> None: ...
     @property
     def ground_height(self) -> float:
         """
@@ -1857,12 +2034,26 @@ class FlightSettings:
     @initial_thrusts.setter
     def initial_thrusts(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
     @property
+    def integrator(self) -> Integrator:
+        """
+        of the plant
+        """
+    @integrator.setter
+    def integrator(self, arg0: Integrator) -> None: ...
+    @property
     def joints(self) -> list[str]:
         """
         names
         """
     @joints.setter
     def joints(self, arg0: collections.abc.Sequence[str]) -> None: ...
+    @property
+    def limits(self) -> Limits:
+        """
+        of joints, thrusts, torques
+        """
+    @limits.setter
+    def limits(self, arg0: Limits) -> None: ...
     @property
     def path(self) -> WaypointPath:
         """
@@ -1878,12 +2069,26 @@ class FlightSettings:
     @posture_reference.setter
     def posture_reference(self, arg0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None: ...
     @property
+    def predictive(self) -> PredictiveSettings:
+        """
+        of that controller
+        """
+    @predictive.setter
+    def predictive(self, arg0: PredictiveSettings) -> None: ...
+    @property
     def pulses(self) -> list[Pulse]:
         """
         list of Pulse
         """
     @pulses.setter
     def pulses(self, arg0: collections.abc.Sequence[Pulse]) -> None: ...
+    @property
+    def reference(self) -> ReferenceSettings:
+        """
+        from commands to references
+        """
+    @reference.setter
+    def reference(self, arg0: ReferenceSettings) -> None: ...
     @property
     def rotation_deadband(self) -> float:
         """
@@ -1903,6 +2108,13 @@ class FlightSettings:
         """
         number of samples of the flight
         """
+    @property
+    def servo_plant(self) -> ServoPlantSettings:
+        """
+        of that controller's robot
+        """
+    @servo_plant.setter
+    def servo_plant(self, arg0: ServoPlantSettings) -> None: ...
     @property
     def step(self) -> float:
         """
@@ -1957,6 +2169,13 @@ class FlightSettings:
         """
     @trim.setter
     def trim(self, arg0: TrimSettings | None) -> None: ...
+    @property
+    def weights(self) -> Weights:
+        """
+        of the QPs
+        """
+    @weights.setter
+    def weights(self, arg0: Weights) -> None: ...
 
 class FlightStatus:
     """
@@ -1998,9 +2217,15 @@ class FlightObjectives:
     One family of objectives, to be minimized.
     """
     @property
-    def joint_velocity(self) -> float: ...
+    def joint_velocity(self) -> float:
+        """
+        of velocity minus command, groups weighted; units of the family
+        """
     @property
-    def momentum(self) -> float: ...
+    def momentum(self) -> float:
+        """
+        of linear and angular momentum error; units of the family, docs/flight.md
+        """
     @property
     def thrust(self) -> float:
         """
@@ -2012,14 +2237,20 @@ class ObjectiveParts:
     Terms of a family before they are added.
     """
     @property
-    def angular_momentum(self) -> float: ...
+    def angular_momentum(self) -> float:
+        """
+        units of the family; rms: [kg m^2/s]
+        """
     @property
     def joint_velocity(self) -> list[float]:
         """
         one per joint group, without its weight
         """
     @property
-    def linear_momentum(self) -> float: ...
+    def linear_momentum(self) -> float:
+        """
+        units of the family; rms: [kg m/s]
+        """
 
 class FlightProfile:
     """
@@ -2176,7 +2407,10 @@ class FlightLog:
         (N, 3) [m/s]
         """
     @property
-    def completed(self) -> bool: ...
+    def completed(self) -> bool:
+        """
+        whether the status says so
+        """
     @property
     def failure_reason(self) -> str | None:
         """
@@ -2193,7 +2427,10 @@ class FlightLog:
         [kg]
         """
     @property
-    def ground_touched(self) -> bool: ...
+    def ground_touched(self) -> bool:
+        """
+        whether a contact point was below the ground
+        """
     @property
     def joint_positions(self) -> numpy.ndarray:
         """
@@ -2230,7 +2467,10 @@ class FlightLog:
         [Nm]
         """
     @property
-    def measures(self) -> FlightMeasures: ...
+    def measures(self) -> FlightMeasures:
+        """
+        FlightMeasures
+        """
     @property
     def min_clearance(self) -> float:
         """
@@ -2252,35 +2492,65 @@ class FlightLog:
         (N, 6) E_l, E_w
         """
     @property
-    def paper(self) -> FlightObjectives: ...
+    def paper(self) -> FlightObjectives:
+        """
+        FlightObjectives as the paper defines them
+        """
     @property
-    def profile(self) -> FlightProfile: ...
+    def profile(self) -> FlightProfile:
+        """
+        FlightProfile
+        """
     @property
-    def qp_failures(self) -> int: ...
+    def qp_failures(self) -> int:
+        """
+        steps in which a QP was not solved
+        """
     @property
     def qp_iterations(self) -> numpy.ndarray:
         """
         (N, 2) factorizations of the momentum and the torque QP
         """
     @property
-    def rms(self) -> FlightObjectives: ...
+    def rms(self) -> FlightObjectives:
+        """
+        FlightObjectives: root mean squares, SI
+        """
     @property
-    def rms_parts(self) -> ObjectiveParts: ...
+    def rms_parts(self) -> ObjectiveParts:
+        """
+        terms of rms
+        """
     @property
     def rotation_reference(self) -> numpy.ndarray:
         """
         (N, 3, 3)
         """
     @property
-    def samples(self) -> int: ...
+    def samples(self) -> int:
+        """
+        N, how many there are
+        """
     @property
-    def script(self) -> FlightObjectives: ...
+    def script(self) -> FlightObjectives:
+        """
+        FlightObjectives as the authors' program prints them
+        """
     @property
-    def script_parts(self) -> ObjectiveParts: ...
+    def script_parts(self) -> ObjectiveParts:
+        """
+        terms of script
+        """
     @property
-    def status(self) -> FlightStatus: ...
+    def status(self) -> FlightStatus:
+        """
+        FlightStatus
+        """
     @property
-    def step(self) -> float: ...
+    def step(self) -> float:
+        """
+        between samples [s]
+        """
     @property
     def thrust(self) -> numpy.ndarray:
         """
@@ -2307,7 +2577,10 @@ class FlightLog:
         (N, joints) [Nm]
         """
     @property
-    def total_qp_iterations(self) -> int: ...
+    def total_qp_iterations(self) -> int:
+        """
+        factorizations of both QPs
+        """
     @property
     def unmodeled_force(self) -> numpy.ndarray:
         """
@@ -2334,7 +2607,10 @@ class Trim:
         (4, 4)
         """
     @property
-    def iterations(self) -> int: ...
+    def iterations(self) -> int:
+        """
+        that it took
+        """
     @property
     def joints(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
@@ -2361,21 +2637,45 @@ class JetPrediction:
     Linear jet of a prediction.
     """
     @property
-    def constant(self) -> float: ...
+    def constant(self) -> float:
+        """
+        [N/s^2]
+        """
     @property
-    def per_rate(self) -> float: ...
+    def per_rate(self) -> float:
+        """
+        [1/s]
+        """
     @property
-    def per_thrust(self) -> float: ...
+    def per_thrust(self) -> float:
+        """
+        [1/s^2]
+        """
     @property
-    def per_variable(self) -> float: ...
+    def per_variable(self) -> float:
+        """
+        [N/s^2]
+        """
     @property
-    def static_gain(self) -> float: ...
+    def static_gain(self) -> float:
+        """
+        of thrust per v, held steady [N]
+        """
     @property
-    def thrust(self) -> float: ...
+    def thrust(self) -> float:
+        """
+        of the linearization [N]
+        """
     @property
-    def thrust_rate(self) -> float: ...
+    def thrust_rate(self) -> float:
+        """
+        of the linearization [N/s]
+        """
     @property
-    def variable(self) -> float: ...
+    def variable(self) -> float:
+        """
+        v of the linearization
+        """
 
 class PredictionModel:
     """
@@ -2384,7 +2684,7 @@ class PredictionModel:
     @property
     def angular_velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
-        (3,)
+        (3,) [rad/s]
         """
     @property
     def force_of_joint(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
@@ -2394,12 +2694,12 @@ class PredictionModel:
     @property
     def force_of_thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
         """
-        (3, jets)
+        (3, jets) [N/N]
         """
     @property
     def inertia(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
         """
-        (3, 3)
+        (3, 3) about the center of mass [kg m^2]
         """
     @property
     def jets(self) -> list[JetPrediction]:
@@ -2407,7 +2707,10 @@ class PredictionModel:
         list of JetPrediction
         """
     @property
-    def mass(self) -> float: ...
+    def mass(self) -> float:
+        """
+        [kg]
+        """
     @property
     def moment_of_joint(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
         """
@@ -2416,27 +2719,27 @@ class PredictionModel:
     @property
     def moment_of_thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, n]"]:
         """
-        (3, jets)
+        (3, jets) [N m/N]
         """
     @property
     def rpy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
-        (3,)
+        (3,) of the linearization [rad]
         """
     @property
     def rpy_rate(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
         """
-        (3, 3) of the angular momentum
+        (3, 3) roll, pitch, yaw rates per angular momentum [1/(kg m^2)]
         """
     @property
     def weight(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
-        (3,)
+        (3,) [N]
         """
     @property
     def weight_per_rpy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
         """
-        (3, 3)
+        (3, 3) [N/rad]
         """
     @property
     def world_R_body(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
@@ -2451,25 +2754,43 @@ class PredictionState:
     @property
     def angular_momentum(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
-        body axes
+        (3,) body axes [kg m^2/s]
         """
     @property
-    def com(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    def com(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) world axes [m]
+        """
     @property
-    def com_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    def com_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of its error [m s]
+        """
     @property
     def linear_momentum(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
-        body axes
+        (3,) body axes [kg m/s]
         """
     @property
-    def rpy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    def rpy(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of the body, unwrapped [rad]
+        """
     @property
-    def rpy_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]: ...
+    def rpy_integral(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) of its error [rad s]
+        """
     @property
-    def thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (jets,) [N]
+        """
     @property
-    def thrust_rate(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def thrust_rate(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (jets,) [N/s]
+        """
 
 class PredictiveController:
     """
@@ -2499,24 +2820,45 @@ class PredictiveController:
         Begin at a state at rest: its center of mass and attitude are the path's start, the set points home, the throttles those that hold the thrusts.
         """
     @property
-    def gradient(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def gradient(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) of the last solve
+        """
     @property
-    def hessian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def hessian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n) of the last solve
+        """
     @property
     def joint_columns(self) -> list[int]:
         """
         first unknown of each block of joint displacements
         """
     @property
-    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
     @property
-    def prediction(self) -> PredictionModel: ...
+    def prediction(self) -> PredictionModel:
+        """
+        PredictionModel of the last solve
+        """
     @property
-    def result(self) -> BoxQpResult: ...
+    def result(self) -> BoxQpResult:
+        """
+        BoxQpResult of the last solve
+        """
     @property
-    def set_points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def set_points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [rad]
+        """
     @property
-    def state(self) -> PredictionState: ...
+    def state(self) -> PredictionState:
+        """
+        PredictionState of the last solve
+        """
     @property
     def step_ends(self) -> list[float]:
         """
@@ -2533,9 +2875,15 @@ class PredictiveController:
         [%]
         """
     @property
-    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
     @property
-    def variables(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def variables(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (jets,) v of the throttles
+        """
 
 def bias_forces(
     model: Model,

@@ -178,13 +178,25 @@ class SizeSource:
         radius: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     @property
-    def growth(self) -> float: ...
+    def growth(self) -> float:
+        """
+        of the edge length per distance
+        """
     @property
-    def points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]: ...
+    def points(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
+        """
+        (k, 3) m
+        """
     @property
-    def radius(self) -> float: ...
+    def radius(self) -> float:
+        """
+        m
+        """
     @property
-    def size(self) -> float: ...
+    def size(self) -> float:
+        """
+        m
+        """
 
 class SizeField:
     """
@@ -206,14 +218,20 @@ class SizeField:
         The field with all edge lengths times a positive factor.
         """
     @property
-    def base(self) -> float: ...
+    def base(self) -> float:
+        """
+        m
+        """
     @property
     def smallest(self) -> float:
         """
         m, the smallest edge length anywhere
         """
     @property
-    def sources(self) -> list[SizeSource]: ...
+    def sources(self) -> list[SizeSource]:
+        """
+        list of SizeSource
+        """
 
 class MeshQuality:
     """
@@ -230,11 +248,20 @@ class MeshQuality:
         elements with a dihedral angle below 5 degrees
         """
     @property
-    def max_dihedral_deg(self) -> float: ...
+    def max_dihedral_deg(self) -> float:
+        """
+        degrees
+        """
     @property
-    def mean_radius_ratio(self) -> float: ...
+    def mean_radius_ratio(self) -> float:
+        """
+        1 if all are regular
+        """
     @property
-    def min_dihedral_deg(self) -> float: ...
+    def min_dihedral_deg(self) -> float:
+        """
+        degrees
+        """
     @property
     def min_radius_ratio(self) -> float:
         """
@@ -341,7 +368,10 @@ class TetMesh:
         (b,) index into face_names
         """
     @property
-    def face_names(self) -> list[str]: ...
+    def face_names(self) -> list[str]:
+        """
+        that boundary_face indexes
+        """
     @property
     def nodes(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 3]"]:
         """
@@ -382,9 +412,15 @@ class Material:
         kg/m3
         """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        for people
+        """
     @property
-    def poisson_ratio(self) -> float: ...
+    def poisson_ratio(self) -> float:
+        """
+        -1 to 0.5
+        """
     @property
     def yield_strength(self) -> float:
         """
@@ -716,7 +752,10 @@ class StaticResult:
         estimated relative error in the energy norm
         """
     @property
-    def equations(self) -> int: ...
+    def equations(self) -> int:
+        """
+        free components of displacement
+        """
     @property
     def exclusion_largest(self) -> float:
         """
@@ -733,7 +772,10 @@ class StaticResult:
         of conjugate gradients; 0: solved by the factor
         """
     @property
-    def left_out(self) -> LeftOut: ...
+    def left_out(self) -> LeftOut:
+        """
+        LeftOut
+        """
     @property
     def max_displacement(self) -> float:
         """
@@ -888,7 +930,10 @@ class UnitResponses:
         Largest von Mises stress over a history (instants, units) of the units' factors.
         """
     @property
-    def mesh(self) -> TetMesh: ...
+    def mesh(self) -> TetMesh:
+        """
+        TetMesh
+        """
     @property
     def stress(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
