@@ -1,4 +1,4 @@
-"""Evaluations in worker processes that may crash, hang or eat memory without harm to the run.
+"""Evaluations in worker processes that may crash, hang or exhaust memory without affecting the run.
 
 Each evaluation runs in a process of its own group with a wall-clock and a memory limit. What an evaluation does to its
 process (exception, signal, endless loop, memory) is a `failed` Evaluation with the reason; what the machine does to it

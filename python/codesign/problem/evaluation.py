@@ -41,7 +41,7 @@ class Evaluation:
     def failure(
         cls, design: dict[str, DesignValue], reason: str, provenance: dict[str, Any] | None = None
     ) -> Evaluation:
-        """An evaluation that gave no numbers."""
+        """A failed evaluation."""
         return cls(design=design, status="failed", reason=reason, provenance=provenance or {})
 
     @property
