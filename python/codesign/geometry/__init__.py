@@ -1,5 +1,6 @@
 """Parametric parts: one description, evaluated as a triangulated solid or as an exact B-rep."""
 
+from codesign.geometry.edges import chamfer, fillet
 from codesign.geometry.profile import Loop, Path, Profile, Resolution, circle, polygon, rectangle
 from codesign.geometry.shape import (
     Extrusion,
@@ -27,9 +28,11 @@ __all__ = [
     "Shape",
     "at_points",
     "box",
+    "chamfer",
     "circle",
     "cone",
     "cylinder",
+    "fillet",
     "plate",
     "polar",
     "polygon",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from codesign import __version__
 from codesign.files import write_bytes
-from codesign.geometry.plate import lay_out
+from codesign.geometry.layout import lay_out
 from codesign.geometry.profile import Vector
 from codesign.geometry.solid import Solid
 from codesign.units import MILLIMETER

@@ -117,10 +117,14 @@ class Extrusion(Shape):
 
 @dataclass(frozen=True, slots=True)
 class Revolution(Shape):
-    """A profile of (axial, radial) coordinates, radial >= 0, turned once about the x axis of its frame."""
+    """A profile of (axial, radial) coordinates, radial >= 0, turned once about the x axis of its frame.
+
+    divided_as: radius [mm] whose number of chords it takes as a mesh; by default its largest one.
+    """
 
     profile: Profile
     frame: Frame = XY
+    divided_as: float | None = None
 
     def __post_init__(self) -> None:
         if self.profile.holes:

@@ -75,6 +75,11 @@ def build_solid(shape: Shape, resolution: Resolution, genus: int | None = None) 
     return Solid(points, triangles, np.array(mesh.face_id, dtype=np.int64), tuple(evaluator.face_names))
 
 
+def mesh_volume(shape: Shape, resolution: Resolution) -> float:
+    """Volume [mm³] of the mesh of a shape, whatever its number of bodies."""
+    return float(_Evaluator(resolution).evaluate_whole(shape).volume())
+
+
 class _Evaluator:
     """One evaluation: gives every face of every primitive its number and remembers the names."""
 

@@ -74,7 +74,7 @@ def _revolution(revolution: Revolution, resolution: Resolution) -> PrimitiveMesh
     """A face for each edge of the profile that does not lie on the axis; points on the axis are single."""
     frame, loop = revolution.frame, revolution.profile.outer
     outline, edge = loop.points(resolution)
-    steps = resolution.arc_segments(float(outline[:, 1].max()), FULL_TURN)
+    steps = resolution.arc_segments(revolution.divided_as or float(outline[:, 1].max()), FULL_TURN)
     on_axis = outline[:, 1] == 0.0
     size = np.where(on_axis, 1, steps)
     start = np.cumsum(size) - size

@@ -1,5 +1,6 @@
 """The checks of layering find what they are for; `make check` runs them on the sources themselves."""
 
+import ast
 import os
 import shutil
 import subprocess
@@ -57,3 +58,17 @@ def test_an_include_of_a_higher_layer_is_found(tmp_path, file, include, reason):
     result = subprocess.run(command, capture_output=True, text=True)
     assert result.returncode == (1 if reason else 0)
     assert (reason in result.stdout) if reason else not result.stdout
+
+
+def test_no_module_hides_a_name_that_its_package_offers():
+    """`from codesign.geometry import plate` was the module once that was loaded."""
+    root, hidden = REPOSITORY / "python", []
+    for file in root.rglob("__init__.py"):
+        package = ".".join(file.parent.relative_to(root).parts)
+        modules = {path.stem for path in (*file.parent.glob("*.py"), *file.parent.glob("*/"))}
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(f"{package}."):
+                own = str(node.module).rpartition(".")[2]  # a name of its own module is bound after it is loaded
+                offered = {alias.asname or alias.name for alias in node.names}
+                hidden += [f"{package}.{name}" for name in (offered & modules) - {own}]
+    assert hidden == []

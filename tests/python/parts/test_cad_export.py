@@ -12,8 +12,8 @@ import pytest
 import trimesh
 
 import codesign
+from codesign.geometry.layout import lay_out
 from codesign.geometry.mesh_files import write_glb
-from codesign.geometry.plate import lay_out
 from codesign.parts.cad_export import export_parts
 from codesign.parts.component import Component
 from codesign.parts.part import EXPORT_RESOLUTION
