@@ -23,8 +23,8 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent))
 from standin import StandIn, standin
 
-from codesign.search.driver import Schedule
 from codesign.search.optimization import optimize
+from codesign.search.plan import Schedule
 from codesign.search.sampling import RandomSearch
 
 SPREAD = 0.3  # standard deviation of the evaluation time over its mean

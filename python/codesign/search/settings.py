@@ -10,7 +10,7 @@ from typing import Any
 
 from codesign.problem.design_space import DesignSpace
 from codesign.search.base import Grid, Search
-from codesign.search.driver import Plan, Schedule, Termination
+from codesign.search.plan import Plan, Schedule, Termination
 from codesign.search.registry import find_search
 
 PENDING = 4096  # designs that a search which learns nothing asks for ahead
