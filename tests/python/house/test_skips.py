@@ -21,7 +21,7 @@ def skips(file: Path) -> list[str]:
 
 def test_only_absent_shared_data_is_a_reason_to_skip():
     found = {str(file.relative_to(TESTS)): names for file in sorted(TESTS.rglob("*.py")) if (names := skips(file))}
-    assert found == {"python/conftest.py": ["module", "shared_data"]}
+    assert found == {"conftest.py": ["module", "shared_data"]}
 
 
 def test_a_skip_is_found(tmp_path):
