@@ -26,7 +26,7 @@ def edges_of(triangles: Triangles) -> Triangles:
 
 
 def uses_of(edges: Triangles) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """For each edge the number of its undirected edge, and how many triangles use each undirected edge."""
+    """(e,) number of the undirected edge of each edge (e, 2); (undirected edges,) how many triangles use each."""
     low, high = edges.min(axis=1), edges.max(axis=1)
     _, number, uses = np.unique(low * (high.max(initial=0) + 1) + high, return_inverse=True, return_counts=True)
     return number.ravel(), uses
@@ -174,7 +174,7 @@ def oriented(triangles: Triangles) -> tuple[Triangles, int]:
 
 
 def shells_of(triangles: Triangles) -> NDArray[np.int64]:
-    """Number of the shell of each triangle: what is connected through edges of exactly two triangles."""
+    """(m,) number of the shell of each triangle (m, 3): what is connected through edges of exactly two triangles."""
     first, second, _ = _neighbors(triangles)
     count = len(triangles)
     graph = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))

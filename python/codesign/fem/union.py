@@ -22,7 +22,7 @@ def shell_volumes(points: Points, triangles: Triangles) -> NDArray[np.float64]:
 def faced_outward(points: Points, triangles: Triangles) -> tuple[Triangles, int]:
     """Shells that are inside-out, turned; those inside others are cavities and stay.
 
-    Returns: the triangles, and how many shells were turned.
+    Returns: the triangles (m, 3), and how many shells were turned.
     """
     turned = 0
     shell = shells_of(triangles)
@@ -38,7 +38,7 @@ def faced_outward(points: Points, triangles: Triangles) -> tuple[Triangles, int]
 
 
 def united(points: Points, triangles: Triangles) -> tuple[Points, Triangles]:
-    """The union of all bodies, each with its cavities.
+    """The union of all bodies, each with its cavities: points (n, 3) [m] and triangles (m, 3).
 
     Raises: MeshError: a body is not closed.
     """
@@ -58,7 +58,7 @@ def simplified(points: Points, triangles: Triangles, tolerance: float) -> tuple[
 
 
 def solid(points: Points, triangles: Triangles) -> manifold3d.Manifold:
-    """The body of manifold3d bounded by the triangles. Raises: MeshError: they do not bound one."""
+    """The body of manifold3d bounded by triangles (m, 3) of points (n, 3). Raises: MeshError: they bound none."""
     used, number = np.unique(triangles, return_inverse=True)
     mesh = manifold3d.Mesh64(
         vert_properties=np.ascontiguousarray(points[used]),
@@ -71,7 +71,7 @@ def solid(points: Points, triangles: Triangles) -> manifold3d.Manifold:
 
 
 def arrays_of(body: manifold3d.Manifold) -> tuple[Points, Triangles]:
-    """Points and triangles of a body of manifold3d."""
+    """Points (n, 3) and triangles (m, 3) of a body of manifold3d."""
     mesh = body.to_mesh64()
     return np.array(mesh.vert_properties[:, :3], dtype=float), np.array(mesh.tri_verts, dtype=np.int64)
 

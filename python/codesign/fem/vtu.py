@@ -85,7 +85,7 @@ class StressModel:
         )
 
     def with_mirror_image(self, point: Array, normal: Array) -> StressModel:
-        """The whole of which this is one half, cut by a plane; nodes on the plane are shared."""
+        """The whole of which this is one half, cut by a plane: a point [m], a unit normal; nodes on it are shared."""
         distance = (self.nodes - point) @ normal
         on_plane = np.abs(distance) < 1e-7 * np.ptp(self.nodes, axis=0).max()
         away = np.flatnonzero(~on_plane)

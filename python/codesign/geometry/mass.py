@@ -46,7 +46,7 @@ def volume_moments(points: Vector, triangles: Indices) -> Vector:
 
 
 def settled(coarse: Vector, fine: Vector) -> bool:
-    """Whether two meshes are fine enough for `extrapolate`: volume (1e-5) and inertia (5e-5 about the com).
+    """Whether two meshes with moments (10,) are fine enough for `extrapolate`: volume (1e-5), inertia (5e-5).
 
     Judged by how much they change from one mesh to the next. What is left after the extrapolation is at most a 1/400 of
     that in the volume and a 1/130 in the inertia, both on a cylinder with 16 chords, and less with more chords.
@@ -63,7 +63,7 @@ def _central(moments: Vector) -> Vector:
 
 
 def extrapolate(coarse: Vector, fine: Vector, finest: Vector | None = None) -> Vector:
-    """Value for infinitely many segments from two or three meshes, each with twice the chords of the one before.
+    """Moments (10,) for infinitely many segments from two or three meshes, each of twice the chords of the one before.
 
     A chord polygon misses an area of order 1/n² beside its arc, so the leading error cancels in (4 fine - coarse) / 3;
     a third mesh cancels the next one, of order 1/n⁴, likewise.

@@ -164,7 +164,7 @@ class Moved(Shape):
 
     @staticmethod
     def by(shape: Shape, matrix: Vector) -> Moved:
-        """`shape` moved by a 4x4 matrix."""
+        """`shape` moved by a matrix (4, 4) [mm]."""
         rotation = matrix[:3, :3]
         if not np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-9:
             raise ValueError("only rotations, reflections and translations keep circles round")

@@ -38,7 +38,7 @@ def tidy(points: Vector, triangles: Indices, face: Indices) -> tuple[Vector, Ind
 
 
 def without_unused(points: Vector, triangles: Indices) -> tuple[Vector, Indices]:
-    """The points that triangles use, in their order, and the triangles numbered accordingly."""
+    """The points (n, 3) that triangles use, in their order, and the triangles (m, 3) numbered accordingly."""
     used = np.zeros(len(points), dtype=bool)
     used[triangles] = True
     number = np.cumsum(used) - 1
@@ -159,7 +159,7 @@ class _Surface:
         return True
 
     def result(self) -> tuple[Vector, Indices, Indices]:
-        """Points in use, triangles and faces."""
+        """Points in use (n, 3), triangles (m, 3) and their faces (m,)."""
         return *without_unused(self.points, self.triangles[self.alive]), self.face[self.alive]
 
 

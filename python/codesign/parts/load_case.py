@@ -63,7 +63,7 @@ class InterfaceForce:
     moment: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def placed(self, part_T_interface: Vector) -> fem.AffineTraction:
-        """The same load in part axes."""
+        """The same load in part axes, of a pose (4, 4) [m]."""
         R, position = part_T_interface[:3, :3], part_T_interface[:3, 3]
         return fem.AffineTraction(self.face, R @ self.force, R @ self.point + position, R @ self.moment)
 
@@ -82,7 +82,7 @@ class CarriedMass:
     interface: str = ""
 
     def placed(self, part_T_axes: Vector) -> fem.RemoteMass:
-        """The same body in part axes."""
+        """The same body in part axes, of a pose (4, 4) [m]."""
         R, origin = part_T_axes[:3, :3], part_T_axes[:3, 3]
         return fem.RemoteMass(self.face, self.mass, R @ self.position + origin, R @ np.diag(self.moments) @ R.T)
 

@@ -138,7 +138,7 @@ class _Document:
         return found if self._shapes.FindSubShape(product, face, found) else self._shapes.AddSubShape(product, face)
 
     def add_assembly(self, name: str, components: Sequence[tuple[str, TDF_Label, Vector]]) -> None:
-        """A product made of placed products; poses in meters."""
+        """A product made of placed products: name, product, pose (4, 4) [m]."""
         assembly = self._shapes.NewShape()
         _set_name(assembly, name)
         for component_name, part, pose in components:

@@ -40,7 +40,7 @@ class View:
     hidden: tuple[Stroke, ...]
 
     def place(self, xyz: Vector) -> Vector:
-        """Points (…, 3) of the solid in the view (…, 2)."""
+        """Points (..., 3) of the solid in the view (..., 2) [mm]."""
         return np.stack([xyz @ self.right, xyz @ np.cross(self.towards, self.right)], axis=-1)
 
     @property
@@ -51,7 +51,7 @@ class View:
 
 
 def project(shape: TopoDS_Shape, towards: Vector, right: Vector, hidden: bool = True) -> View:
-    """A view of a solid, seen from the direction `towards` with `right` to the right; hidden lines if wanted."""
+    """A view of a solid, seen from a direction (3,) with another to the right; hidden lines if wanted."""
     towards, right = (np.asarray(v, dtype=float) / np.linalg.norm(v) for v in (towards, right))
     algorithm = HLRBRep_Algo()
     algorithm.Add(shape, 0)

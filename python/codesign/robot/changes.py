@@ -158,7 +158,7 @@ def pseudo_inertia(body: Inertial) -> Matrix:
 
 
 def inertial_of(P: Matrix) -> Inertial:
-    """The inertial of a pseudo-inertia."""
+    """The inertial of a pseudo-inertia (4, 4) [kg, kg m, kg m²]."""
     mass = float(P[3, 3])
     com = P[:3, 3] / mass
     second = P[:3, :3] - mass * np.outer(com, com)

@@ -252,7 +252,7 @@ def posture_poses(robot: RobotDescription, postures: Mapping[str, Matrix], count
 def pair_clearances(
     shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix], pairs: Sequence[tuple[str, str]], limit: float
 ) -> list[Clearance]:
-    """Smallest signed distance of each pair over all postures, where it is below `limit`; nearest first."""
+    """Smallest signed distance [m] of each pair over all postures, where it is below `limit`; nearest first."""
     if not pairs:
         return []
     whole = {name: _placed_spheres([np.vstack(list(pieces))], poses[name]) for name, pieces in shapes.items()}

@@ -300,7 +300,7 @@ class RobotDescription:
         return RobotDescription(self.root_link, self.directory, xml)
 
     def hung_from(self, joint: str, parent: str, parent_T_child: ArrayLike) -> RobotDescription:
-        """The robot with a joint that hangs from another link. Raises: UrdfError: no such joint or link."""
+        """The robot with a joint hung from another link at a pose (4, 4). Raises: UrdfError: no such joint or link."""
         self.link(parent)
         moved = self.set_joint_origin(joint, parent_T_child)
         element = moved._copied("joint", joint)

@@ -47,7 +47,7 @@ class Inertial:
         return cls(properties.mass, properties.com, properties.inertia)
 
     def moved(self, a_T_b: ArrayLike) -> Inertial:
-        """The body given in frame b, in frame a."""
+        """The body given in frame b, in frame a, by a pose (4, 4)."""
         T = np.asarray(a_T_b, dtype=float)
         R = T[:3, :3]
         inertia = R @ self.inertia @ R.T

@@ -145,5 +145,5 @@ def resolved_mimics(joints: Mapping[str, Any]) -> dict[str, tuple[str, float, fl
 
 
 def number_text(values: ArrayLike) -> str:
-    """Numbers of an URDF attribute: shortest text that reads back exactly, no negative zero."""
+    """Numbers of a URDF attribute (any shape, row by row): shortest text that reads back exactly, no negative zero."""
     return " ".join(repr(float(value) + 0.0) for value in np.asarray(values, dtype=float).ravel())

@@ -81,7 +81,7 @@ class Prospects:
 
 
 def reference_point(front: Array, wide: bool) -> Array:
-    """Where gains end: a little beyond the worst values of the front, not better than the median design if `wide`."""
+    """(objectives,) where gains end: a little beyond the front's worst, not better than the median design if `wide`."""
     worst = front.max(axis=0)
     reference: Array = worst + MARGIN * np.maximum(worst - front.min(axis=0), LEAST_RANGE)
     if wide or len(front) < FEW:

@@ -78,7 +78,7 @@ class ChebyshevImprovement:
 
 
 def expected_shortfall(bound: Array, mean: Array, deviation: Array) -> Array:
-    """E max(bound - y, 0) of a normal y; 0 for the bound -inf."""
+    """(m,) E max(bound - y, 0) of normal y; 0 for the bound -inf."""
     finite = np.isfinite(bound)
     away = (np.where(finite, bound, 0.0) - mean) / deviation
     value = deviation * (away * ndtr(away) + DENSITY * np.exp(-0.5 * away**2))

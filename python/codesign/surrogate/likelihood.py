@@ -30,7 +30,7 @@ class Hyperparameters:
 
 
 def matern(distance: Array) -> Array:
-    """Matérn correlation of smoothness 5/2 at distances in lengths."""
+    """Matérn correlation of smoothness 5/2 at distances d relative to the length: (1 + z + z²/3) exp(-z), z = √5 d."""
     scaled = ROOT5 * distance
     correlation: Array = (1.0 + scaled + scaled**2 / 3.0) * np.exp(-scaled)
     return correlation
@@ -74,7 +74,7 @@ class Likelihood:
 
 
 def fit(squares: Array, values: Array) -> Hyperparameters:
-    """The most probable lengths and noise, arguments as of `Likelihood`; a function of these alone."""
+    """The most probable lengths and noise of squares (variables, n, n) and values (n,); a function of these alone."""
     likelihood = Likelihood(squares, values)
     bounds = [tuple(np.log(LENGTH_BOUNDS))] * len(squares) + [tuple(np.log(NOISE_BOUNDS))]
     best: tuple[float, Array] | None = None

@@ -43,7 +43,7 @@ class Scaling:
         return np.where(scaled > 0.0, np.log1p(np.maximum(scaled, 0.0)), scaled)
 
     def back(self, scaled: Array) -> Array:
-        """The inverse."""
+        """(n,) values of scaled ones."""
         return self.median + self.unit * np.where(scaled > 0.0, np.expm1(np.maximum(scaled, 0.0)), scaled)
 
 
@@ -99,7 +99,7 @@ class Condition:
         return chance
 
     def conditioned(self, inputs: Array) -> Condition:
-        """See `Output.conditioned`."""
+        """As of `Output`, at a point (columns,)."""
         return Condition(self.output.conditioned(inputs), self.threshold, self.least_deviation)
 
 
@@ -110,7 +110,7 @@ def has_objectives(evaluation: Evaluation, names: Sequence[str]) -> bool:
 
 
 def margins(evaluations: Sequence[Evaluation]) -> dict[str, tuple[npt.NDArray[np.int_], Array]]:
-    """Rows and margins of every constraint, for the designs that have a number of it.
+    """Rows (k,) and margins (k,) of every constraint, for the designs that have a number of it.
 
     A problem that tells violations only has margins that are never above 0.
     """

@@ -1,18 +1,23 @@
 """Public functions that take or return numbers say what they are: units, shapes."""
 
+import ast
 import importlib
 import inspect
 import re
 import types
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+import codesign
+
 WINGS = ("", "geometry", "fem", "parts", "study", "report", "dynamics", "transforms")
+ARRAYS = re.compile(r"NDArray|ArrayLike|Vector\b|Matrix|\bArray\b|Points")
 NUMBERS = re.compile(r"NDArray|ArrayLike|Vector|Matrix|\bfloat\b")
 # A unit in brackets, a shape, or a word for a number without unit.
-UNITS = "m|mm|N|Pa|kg|rad|s|deg|SI|Hz|units?|factors?|share|relative|degrees|ratio"
+UNITS = "m|mm|N|Pa|kg|rad|s|deg|SI|Hz|units?|factors?|share|relative|degrees|ratio|any shape"
 MEANING = re.compile(rf"\[[^\]]+\]|\((\w+|\.\.\.)(, \w+)*,?( \d)?\)|\b({UNITS})\b|_deg\b")
 
 
@@ -68,6 +73,26 @@ def silent_native(wing: str) -> list[str]:
             if isinstance(attribute, property) and not text:
                 found.append(f"{name}.{member}")
     return found
+
+
+def silent_arrays(file: Path) -> Iterator[str]:
+    """Public functions of a module, exported or not, with arrays whose shape or unit no docstring tells."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    for scope in (tree, *(node for node in tree.body if isinstance(node, ast.ClassDef))):
+        if isinstance(scope, ast.ClassDef) and "Protocol" in map(ast.unparse, scope.bases):
+            continue
+        for function in scope.body:
+            if isinstance(function, ast.FunctionDef) and not function.name.startswith("_"):
+                hints = [a.annotation for a in (*function.args.args, *function.args.kwonlyargs)] + [function.returns]
+                text = " ".join(ast.unparse(hint) for hint in hints if hint is not None)
+                if ARRAYS.search(text) and not MEANING.search(ast.get_docstring(function) or ""):
+                    yield f"{file.name}:{function.lineno}: {function.name}"
+
+
+def test_arrays_have_shapes_or_units() -> None:
+    package = Path(codesign.__file__).parent
+    files = [f for f in sorted(package.rglob("*.py")) if "studies" not in f.parts]
+    assert [where for file in files for where in silent_arrays(file)] == []
 
 
 @pytest.mark.parametrize("wing", WINGS)

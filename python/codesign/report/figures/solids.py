@@ -108,7 +108,7 @@ def hero(data: FigureData, width: int = 460, height: int = 560) -> NDArray[np.ui
 
 
 def close_up(scene: RobotScene, joints: Array | None, base: Matrix) -> tuple[list[Body], list[Body]]:
-    """All bodies of the robot; those that must be in the picture: the parts and what they carry."""
+    """All bodies of the robot at joints (n,) [rad]; those that must be in the picture: parts and what they carry."""
     bodies = robot_bodies(scene, joints, base)
     parts = {piece.link for piece in scene.pieces if piece.part is not None}
     carried = with_descendants(scene.robot, parts | set(scene.jets))
@@ -116,7 +116,7 @@ def close_up(scene: RobotScene, joints: Array | None, base: Matrix) -> tuple[lis
 
 
 def posture(data: FigureData, evaluation: Evaluation) -> tuple[Array, Matrix]:
-    """Joint positions and base pose in mid-flight, or those at the start if the flight was not kept."""
+    """Joint positions (n,) [rad] and base pose (4, 4) in mid-flight, or at the start if the flight was not kept."""
     detail = data.detail(evaluation)
     if detail is None or detail.flight is None:
         flight = data.study.config.flight
@@ -219,7 +219,7 @@ def _spread_over_path(flight: FlightHistory) -> list[int]:
 
 
 def show_picture(axes: Any, image: NDArray[np.uint8], view: View | None = None) -> None:
-    """An image without axes; with a view, coordinates are meters on the screen, from its center."""
+    """An image (h, w, 3) without axes; with a view, coordinates are meters on the screen, from its center."""
     extent = None
     if view is not None:
         half = view.height / 2.0

@@ -16,7 +16,7 @@ LEVELS = 65535
 
 
 def encoded(values: NDArray[Any], kind: str) -> str:
-    """Little-endian bytes of an array as base64."""
+    """Little-endian bytes of an array (any shape) as base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype=f"<{kind}").tobytes()).decode()
 
 
