@@ -9,11 +9,13 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation, least_infeasible
 from codesign.problem.pareto import non_dominated
 from codesign.problem.quantities import Quantity, words
+from codesign.report.comparison import ComparedRun
 from codesign.report.objections import Objection, objections
 from codesign.report.pareto import Mask, Matrix, dominates, hypervolume_history, knee_distances, late_growth
 from codesign.report.tolerances import Tolerances
@@ -52,6 +54,7 @@ class ReportData:
     baseline_missing: why there is no baseline.   flight_words: what one flight is.
     tolerances: chosen designs as they would be made, if they were sampled.
     part_words: part -> its load case and material.
+    compared: other runs whose fronts are shown beside this one's.
     """
 
     directory: Path
@@ -72,6 +75,7 @@ class ReportData:
     part_words: dict[str, PartWords] = field(default_factory=dict)
     flight_words: str = ""
     tolerances: Tolerances | None = None
+    compared: tuple[ComparedRun, ...] = ()
 
     def label(self, variable: Variable) -> str:
         """A variable's name for people."""
@@ -97,9 +101,14 @@ class ReportData:
         return np.array([self.vector(e.evaluation) for e in self.entries]).reshape(-1, len(self.objectives))
 
     @cached_property
+    def statuses(self) -> NDArray[np.str_]:
+        """Status (n,) of the entries."""
+        return np.array([e.evaluation.status for e in self.entries], dtype=np.str_)
+
+    @cached_property
     def feasible(self) -> Mask:
         """Mask (n,) of the feasible entries."""
-        return np.array([e.evaluation.status == "feasible" for e in self.entries], dtype=bool)
+        return np.asarray(self.statuses == "feasible")
 
     @cached_property
     def front(self) -> list[int]:
@@ -192,8 +201,9 @@ class ReportData:
         return late_growth(self.values, self.feasible, self.front)
 
     def view(self, k: int) -> tuple[float, float] | None:
-        """Range of objective `k` that shows the front and the original, and as much again; outliers lie outside."""
+        """Range of objective `k` that shows the fronts and the original, and as much again; outliers lie outside."""
         shown = [float(self.values[i, k]) for i in {*self.front, *self.choices}]
+        shown += [float(value) for other in self.compared for value in other.values[:, k]]
         if self.baseline_vector is not None:
             shown.append(float(self.baseline_vector[k]))
         feasible = self.values[self.feasible, k]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ from codesign.errors import CodesignError
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 from codesign.problem.quantities import words
+from codesign.report.comparison import load_comparison
 from codesign.report.data import Entry, ReportData
 from codesign.report.details import load_details
 from codesign.report.study_words import flight_words, objective_quantities, part_words
@@ -20,18 +23,21 @@ from codesign.storage.runs import Run, load_run
 logger = logging.getLogger(__name__)
 
 
-def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | None = None) -> ReportData:
+def read_report_data(
+    directory: Path, study: Any = None, baseline: Evaluation | None = None, compare: Sequence[Path] = ()
+) -> ReportData:
     """A run as the report shows it.
 
     Args:
         directory: the run's folder.
         study: its study, None if it cannot be loaded any more; then titles, labels and limits are missing.
         baseline: evaluation of the study's original design, where the run has none.
-    Raises: StoreError if there is no run.
+        compare: folders of runs whose fronts are shown beside this one's.
+    Raises: StoreError if there is no run, or one to compare has other objectives.
     """
     run = load_run(directory)
     evaluated = baseline or _stored_baseline(run, study)
-    return ReportData(
+    read = ReportData(
         directory=Path(directory),
         title=study.title if study is not None else words(run.study["name"]),
         description=" ".join(study.description.split()) if study is not None else "",
@@ -49,11 +55,13 @@ def read_report_data(directory: Path, study: Any = None, baseline: Evaluation | 
         export_command=f"codesign export --study {run.study['source']}",
         labels={name: v.label for name, v in study.config.variables.items()} if study is not None else {},
         notes=_notes(run, study),
-        **({"baseline_missing": missing} if (missing := _baseline_missing(study)) else {}),
+        baseline_missing=_baseline_missing(study) or ReportData.baseline_missing,
         part_words=part_words(study.config) if study is not None else {},
         flight_words=flight_words(study.config) if study is not None else "",
         tolerances=load_tolerances(Path(directory)),
     )
+    others = tuple(load_comparison(Path(other), read, run.study["name"]) for other in compare)
+    return replace(read, compared=others) if others else read
 
 
 def _limits(study: Any) -> dict[str, tuple[str, float]]:

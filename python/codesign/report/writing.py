@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import logging
+from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -39,7 +40,12 @@ class ReportPaths:
 
 
 def write_report(
-    run_directory: str | Path, *, study: Any = None, compute: bool = True, figures: bool = True
+    run_directory: str | Path,
+    *,
+    study: Any = None,
+    compute: bool = True,
+    figures: bool = True,
+    compare: Sequence[str | Path] = (),
 ) -> ReportPaths:
     """Writes `report.html` into a run's folder, and the figures (PNG and PDF) into its folder `figures`.
 
@@ -48,12 +54,13 @@ def write_report(
         compute: whether to evaluate the original design and to compute stress fields and flight histories of a handful
             of designs, where the run does not have them yet; they are kept beside the run.
         figures: whether to draw the figures.
-    Raises: StoreError if there is no run, or the folder cannot be written.
+        compare: folders of runs with the same objectives, whose fronts are shown beside this one's.
+    Raises: StoreError if there is no run, one to compare has other objectives, or the folder cannot be written.
     """
     directory = Path(run_directory)
     study = study if study is not None else study_of(directory)
     current = study if same_study(directory, study) else None
-    run = read_report_data(directory, study)
+    run = read_report_data(directory, study, compare=[Path(other) for other in compare])
     if compute and current is not None:
         run = compute_details(current, run)
     details = load_details(directory)

@@ -7,7 +7,6 @@ other tools know (sensors, transmissions, simulator settings). yourdfpy gives th
 from __future__ import annotations
 
 import copy
-import io
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,7 +22,7 @@ from codesign.dynamics import check_urdf
 from codesign.errors import UrdfError
 from codesign.files import write_text
 from codesign.robot.inertial import Inertial
-from codesign.robot.urdf_xml import MOVING, normalized, number_text, parsed, resolved_mimics
+from codesign.robot.urdf_xml import MOVING, number_text, parsed, read, resolved_mimics
 from codesign.transforms import Matrix, require_pose, rotation_about, rpy_from_rotation
 
 UPPER_TRIANGLE = ("xx", "xy", "xz", "yy", "yz", "zz")
@@ -323,8 +322,7 @@ class RobotDescription:
 
     @cached_property
     def _model(self) -> yourdfpy.URDF:
-        text = ET.tostring(normalized(self._xml))
-        return yourdfpy.URDF.load(io.BytesIO(text), build_scene_graph=False, load_meshes=False)
+        return read(self._xml)
 
     @cached_property
     def _links(self) -> dict[str, yourdfpy.Link]:
@@ -348,7 +346,14 @@ class RobotDescription:
         for index, old in enumerate(xml):
             if old.tag == element.tag and old.get("name") == element.get("name"):
                 xml[index] = element
-        return RobotDescription(self.root_link, self.directory, xml)
+        edited = RobotDescription(self.root_link, self.directory, xml)
+        if not vars(self).keys().isdisjoint(("_model", "_links", "_joints")):  # read already: all but one stays
+            alone = ET.Element(xml.tag, name=self.name)
+            alone.append(element)
+            one = read(alone).robot
+            vars(edited)["_links"] = self._links | {link.name: link for link in one.links}
+            vars(edited)["_joints"] = self._joints | {joint.name: joint for joint in one.joints}
+        return edited
 
 
 def _find(named: Mapping[str, Any], name: str, kind: str) -> Any:

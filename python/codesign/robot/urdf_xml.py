@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import copy
+import io
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from xml.parsers import expat
 
 import numpy as np
+import yourdfpy
 from numpy.typing import ArrayLike
 
 from codesign.errors import UrdfError
@@ -38,6 +40,12 @@ def parsed(content: bytes, encodings: Sequence[str | None]) -> ET.Element:
         except expat.ExpatError as error:
             reason = error
     raise UrdfError(f"not readable text: {reason}")
+
+
+def read(xml: ET.Element) -> yourdfpy.URDF:
+    """Links and joints of a robot, or of some of its elements alone, as yourdfpy reads them."""
+    text = ET.tostring(normalized(xml))
+    return yourdfpy.URDF.load(io.BytesIO(text), build_scene_graph=False, load_meshes=False)
 
 
 def normalized(xml: ET.Element) -> ET.Element:

@@ -9,9 +9,11 @@ from codesign import dynamics as dyn
 from codesign import load_study
 from codesign.chain.flight import find_trajectory, flight_settings
 from codesign.errors import UrdfError
+from codesign.robot import description
 from codesign.robot.changes import RobotChange, Stretch, change_robot, inertial_of, pseudo_inertia
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
+from codesign.robot.urdf_xml import read
 
 VARIABLES = ("height", "shoulder_width", "hip_distance", "ankle_height", "foot_length")
 RANGES = {"height": (-40, 60), "shoulder_width": (-20, 60), "hip_distance": (-10, 60), "ankle_height": (-10, 60)}
@@ -157,3 +159,18 @@ def test_changed_robots_hover_above_the_ground(seed: int) -> None:
         assert log.completed
         assert log.min_clearance > 0.09
         assert 0.1 < log.measures.hover_margin < 0.3
+
+
+def test_changes_read_single_elements_of_a_robot_that_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    values = {"height": 20.0, "shoulder_width": 35.0, "hip_distance": 25.0, "ankle_height": 15.0, "foot_length": -30.0}
+    sizes: list[int] = []
+    monkeypatch.setattr(description, "read", lambda xml: sizes.append(len(xml)) or read(xml))
+    robot = changed(**values)
+    known = {name: robot.link(name) for name in robot.link_names}
+    assert set(sizes) == {1}
+    again = RobotDescription.from_text(robot.to_text())
+    assert robot.link_names == again.link_names and robot.joint_names == again.joint_names
+    for name, link in known.items():
+        assert repr(link) == repr(again.link(name))
+    for name in robot.joint_names:
+        assert repr(robot.joint(name)) == repr(again.joint(name))

@@ -157,11 +157,17 @@ def runs_command(
 
 
 @commands.command(epilog="Example: `codesign report runs/a`")
-def report(run_dir: RunArgument, as_json: JsonOption = False) -> int:
+def report(
+    run_dir: RunArgument,
+    compare: Annotated[
+        list[Path] | None, typer.Option(help="Another run with the same objectives: its front beside this one's.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> int:
     """One self-contained HTML page and the figures of a run."""
     from codesign.report import write_report
 
-    paths = write_report(run_dir)
+    paths = write_report(run_dir, compare=compare or [])
     if as_json:
         print_json({"page": str(paths.html), "figures": [str(path) for path in paths.figures]})
     else:

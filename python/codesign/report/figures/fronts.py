@@ -51,19 +51,27 @@ def draw_projection(axes: Any, run: ReportData, x: int, y: int, color: int | Non
     """Designs in objectives `x` and `y`; the front's markers are colored by objective `color`. Returns them."""
     values = run.values
     known = np.isfinite(values).all(axis=1)
-    infeasible = known & ~run.feasible
-    behind = run.feasible.copy()
+    skipped = known & (run.statuses == "skipped")
+    infeasible = known & ~run.feasible & ~skipped
+    behind = run.feasible | skipped
     behind[run.front] = False
     if infeasible.any():
         axes.scatter(
             values[infeasible, x], values[infeasible, y], 9, style.LOST, "x", linewidths=0.6, label="infeasible"
         )
-    axes.scatter(values[behind, x], values[behind, y], 6, style.DOT, linewidths=0, label="feasible")
+    name = "feasible, or not computed" if skipped.any() else "feasible"
+    axes.scatter(values[behind, x], values[behind, y], 6, style.DOT, linewidths=0, label=name)
     tint = style.BLUE if color is None else values[run.front, color]
     dots = axes.scatter(
         values[run.front, x], values[run.front, y], 20, tint, cmap=None if color is None else style.THIRD,
         edgecolors="white", linewidths=0.4, label="best compromise", zorder=3,
     )  # fmt: skip
+    for k, other in enumerate(run.compared):
+        tint = style.COMPARED[k % len(style.COMPARED)]
+        axes.scatter(
+            other.values[:, x], other.values[:, y], 16, tint, "^", edgecolors="white", linewidths=0.3,
+            label=f"best compromise of {other.name}", zorder=3,
+        )  # fmt: skip
     if run.baseline_vector is not None:
         axes.scatter(
             *run.baseline_vector[[x, y]], 34, style.ORIGINAL, "D", edgecolors="white", label="original", zorder=4

@@ -14,6 +14,7 @@ DOT, LOST = "#b3b6bc", "#c9cbd0"
 BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY = "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9"
 SERIES = (BLUE, ORANGE, GREEN, PURPLE)
 ORIGINAL = VERMILION
+COMPARED = (PURPLE, ORANGE, GREEN, BLUE)  # fronts of other runs
 PART = (0.0, 0.447, 0.698)
 THIRD = "viridis"
 STRESS = ("#e3e6e8", "#f4e3a1", "#f2ac42", "#d2601a", "#7a1616")  # lightness falls steadily

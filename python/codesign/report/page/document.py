@@ -69,6 +69,10 @@ def page_document(
         "choices": run.choices,
         "best": run.best,
         "progress": progress(run),
+        "compared": [
+            {"name": other.name, "ids": list(other.ids), "f": [[_rounded(x) for x in row] for row in other.values]}
+            for other in run.compared
+        ],
         "details": details or {},
         "command": run.export_command,
     }

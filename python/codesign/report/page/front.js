@@ -1,4 +1,5 @@
 /** The trade-off chart: two objectives as axes, a third as color. */
+const COMPARED = ['series-4', 'series-2', 'series-3', 'series-1'];
 const front = {x: 0, y: Math.min(1, report.objectives.length - 1), ready: false, last: null};
 
 const points = test => designs.map((d, i) => i).filter(i => test(designs[i]) && known(designs[i].f[front.x]) && known(designs[i].f[front.y]));
@@ -35,7 +36,18 @@ function frontTraces() {
   traces.push(markers(build, {symbol: 'star', size: 17, color: color('ink'), line: {width: 1.5, color: color('bg')}}, 'recommended'));
   traces.push({...markers([], {symbol: 'circle-open', size: 22, color: color('accent'), line: {width: 2.5}}, 'selected'), hoverinfo: 'skip', hovertemplate: null});
   traces.push({...markers([], {symbol: 'circle-open', size: 18, color: color('ink'), line: {width: 1.5}}, 'hover'), hoverinfo: 'skip', hovertemplate: null});
-  return traces;
+  return traces.concat(report.compared.map(comparedTrace));
+}
+
+/** The front of another run: can be read, not selected. */
+function comparedTrace(run, k) {
+  const tint = color(COMPARED[k % COMPARED.length]);
+  const values = row => report.objectives.map((o, j) => `${escaped(o.label)} <b>${number(row[j])}</b> ${escaped(o.unit)}`).join('<br>');
+  return {
+    type: 'scatter', mode: 'markers', name: escaped(run.name), marker: {symbol: 'triangle-up', size: 9, color: tint, line: {width: 1, color: color('bg')}},
+    x: run.f.map(row => row[front.x]), y: run.f.map(row => row[front.y]),
+    text: run.f.map((row, i) => `<b>Design ${run.ids[i]}</b> of ${escaped(run.name)}<br>${values(row)}`), hovertemplate: '%{text}<extra></extra>',
+  };
 }
 
 function drawFront() {
@@ -50,8 +62,8 @@ function drawFront() {
   element('front-outside').textContent = away ? `${away} ${away === 1 ? 'design lies' : 'designs lie'} outside of this view; double-click the chart to see all.` : '';
   if (!front.ready) {
     front.ready = true;
-    plot.on('plotly_click', event => select(event.points[0].customdata, {scroll: true}));
-    plot.on('plotly_hover', event => hover(event.points[0].customdata, 'front'));
+    plot.on('plotly_click', event => { const i = event.points[0].customdata; if (known(i)) select(i, {scroll: true}); });
+    plot.on('plotly_hover', event => { const i = event.points[0].customdata; if (known(i)) hover(i, 'front'); });
     plot.on('plotly_unhover', () => hover(null, 'front'));
   }
   ring(5, state.selected);

@@ -7,6 +7,7 @@ from html import escape
 
 from codesign.problem.quantities import words as spelled
 from codesign.report.data import ReportData, reasons
+from codesign.report.page.comparison import comparison_table, key_of_runs
 from codesign.report.page.validation import validation_tables
 from codesign.report.page.what_if import section_text
 from codesign.report.validation import Validation
@@ -70,6 +71,7 @@ def _trade_offs(run: ReportData) -> Block:
             f'<label>Up <select id="axis-y">{options}</select></label></div>'
         )
     shapes = {name: shape for name, shape in KEY.items() if name != "original" or run.baseline_vector is not None}
+    shapes |= {escape(name): shape for name, shape in key_of_runs(run).items()}
     key = "".join(
         f'<li><svg width="14" height="14" aria-hidden="true">{shape}</svg>{name}</li>' for name, shape in shapes.items()
     )
@@ -77,7 +79,8 @@ def _trade_offs(run: ReportData) -> Block:
     body = (
         f'<div class="trade"><div class="chart"><div id="front" role="img" aria-label="{label}"></div>'
         f'<ul class="key">{key}</ul><p class="count"><span id="front-outside"></span> '
-        f'<button type="button" class="link" data-save="front">Save as PNG</button></p>{_weights(run)}</div>'
+        '<button type="button" class="link" data-save="front">Save as PNG</button></p>'
+        f"{_weights(run)}{comparison_table(run)}</div>"
         f"{CARD}</div>{ANNOUNCEMENT}"
     )
     third = " Color is the remaining objective." if len(run.objectives) > 2 else ""

@@ -7,6 +7,7 @@ from html import escape
 
 from codesign.problem.design_space import value_text
 from codesign.report import recommendation, words
+from codesign.report.comparison import shares_in_words
 from codesign.report.data import ReportData
 from codesign.report.evidence import Evidence, evidence, validated
 from codesign.report.validation import Validation
@@ -14,7 +15,7 @@ from codesign.report.validation import Validation
 
 def summary(run: ReportData, picture: bytes | None = None, validation: Validation | None = None) -> str:
     """HTML of the first screen; picture: PNG of the robot with the parts that were optimized."""
-    leads = [run.description, words.searched(run), words.gained(run)]
+    leads = [run.description, words.searched(run), words.gained(run), shares_in_words(run)]
     said = f"<h1>{escape(run.title)}</h1>" + "".join(f'<p class="lead">{escape(text)}</p>' for text in leads if text)
     notes = "".join(f'<p class="notice">{escape(note)}</p>' for note in words.caveats(run))
     shown = ""
