@@ -15,6 +15,7 @@ from codesign.geometry.brep import Brep
 from codesign.geometry.features import Flat, flats
 from codesign.geometry.profile import Vector
 from codesign.parts.bores import Bore, bores
+from codesign.parts.labels import label_circles
 from codesign.parts.sheet import Line, Sheet, moved
 from codesign.parts.views import View, project
 
@@ -61,6 +62,8 @@ def draw_part(brep: Brep, caption: Caption) -> Sheet:
         _draw_view(sheet, view, scale, corner, holes)
     _dimension(sheet, views, corners, scale, planes)
     _tilts(sheet, views[0], corners[0], scale, planes)
+    for view, corner in zip(views, corners, strict=True):
+        _number(sheet, view, scale, corner, holes)
     low = _pictures(sheet, brep, holes, scale)
     _table(sheet, holes, low)
     _notes(sheet, caption)
@@ -88,11 +91,10 @@ def _arranged(views: Sequence[View]) -> tuple[float, list[Vector]]:
 
 
 def _draw_view(sheet: Sheet, view: View, scale: float, corner: Vector, holes: Sequence[Bore]) -> None:
-    """Lines, and center marks with numbers of the bores that the view looks along."""
+    """Lines, and center marks of bores."""
     for strokes, pen in ((view.hidden, "hidden"), (view.visible, "visible")):
         sheet.lines += moved((Line(s.points, pen, s.circle) for s in strokes), scale, *corner.tolist())
-    round_ = [hole for hole in holes if hole.hollow and abs(abs(float(hole.axis @ view.towards)) - 1.0) < ALIGNED]
-    for hole in round_:
+    for hole in _seen_round(view, holes):
         x, y = (scale * view.place(hole.mouth) + corner).tolist()
         reach = scale * hole.largest + 2.0
         sheet.line("center", (x - reach, y), (x + reach, y))
@@ -103,7 +105,19 @@ def _draw_view(sheet: Sheet, view: View, scale: float, corner: Vector, holes: Se
             sheet.line("center", *(tuple(p) for p in (scale * view.place(ends) + corner).tolist()))
             if not hole.hollow and view.towards[1] < -0.5:
                 _boss(sheet, view, scale, corner, hole)
-    _labels(sheet, round_, [scale * view.place(hole.mouth) + corner for hole in round_], scale)
+
+
+def _seen_round(view: View, holes: Sequence[Bore]) -> list[Bore]:
+    """The bores that the view looks along."""
+    return [hole for hole in holes if hole.hollow and abs(abs(float(hole.axis @ view.towards)) - 1.0) < ALIGNED]
+
+
+def _number(sheet: Sheet, view: View, scale: float, corner: Vector, holes: Sequence[Bore]) -> None:
+    """Numbers of the bores that the view looks along."""
+    circles = {
+        hole.label: (scale * view.place(hole.mouth) + corner, scale * hole.largest) for hole in _seen_round(view, holes)
+    }
+    label_circles(sheet, circles, SMALL)
 
 
 def _boss(sheet: Sheet, view: View, scale: float, corner: Vector, boss: Bore) -> None:
@@ -115,23 +129,6 @@ def _boss(sheet: Sheet, view: View, scale: float, corner: Vector, boss: Bore) ->
     tx, ty = ex + 3.0 * across[0] + 3.0, ey + 3.0 * across[1] + 3.0
     sheet.line("dimension", (ex, ey), (tx, ty))
     sheet.write(boss.label, tx + 0.5, ty - 0.5 * SMALL, SMALL)
-
-
-def _labels(sheet: Sheet, holes: Sequence[Bore], centers: Sequence[Vector], scale: float) -> None:
-    """Numbers of bores outside of their circles, away from the middle of all, with a line to each."""
-    middle = np.mean(np.reshape(centers, (-1, 2)), axis=0) if holes else np.zeros(2)
-    taken: list[Vector] = []
-    for hole, center in sorted(zip(holes, centers, strict=True), key=lambda item: item[0].largest):
-        away = center - middle
-        away = away / np.linalg.norm(away) if np.linalg.norm(away) > 1.0 else np.array([0.7, 0.7])
-        edge = center + scale * hole.largest * away
-        place = edge + 4.0 * away
-        while any((np.abs(place - other) < (5.5, 3.0)).all() for other in taken):
-            place = place + 1.5 * away
-        taken.append(place)
-        sheet.line("dimension", tuple(edge.tolist()), tuple(place.tolist()))
-        x, y = (place + np.array([0.5, -0.5 * SMALL])).tolist()
-        sheet.write(hole.label, x if away[0] >= 0.0 else x - 1.0, y, SMALL, "left" if away[0] >= 0.0 else "right")
 
 
 def _dimension(
@@ -261,7 +258,9 @@ def _pictures(sheet: Sheet, brep: Brep, holes: Sequence[Bore], scale: float) -> 
         limit = min((RIGHT - COLUMN - 24.0) / (high - low)[0], (room - 14.0) / (high - low)[1])
         size = next((s for s in SCALES if s <= limit and s <= 2.0 * scale), limit)
         corner = np.array([0.5 * (COLUMN + RIGHT), top - 4.0 - 0.5 * (room - 10.0)]) - 0.5 * size * (low + high)
-        _draw_view(sheet, view, size, corner, holes if looks_along else ())
+        shown = holes if looks_along else ()
+        _draw_view(sheet, view, size, corner, shown)
+        _number(sheet, view, size, corner, shown)
         if label:
             sheet.write(f"{label}  {_scale_words(size)}", 0.5 * (COLUMN + RIGHT), top - room + 3.0, SMALL, "center")
         top -= room

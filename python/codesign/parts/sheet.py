@@ -14,6 +14,7 @@ from codesign.errors import LibraryError
 from codesign.files import replacing
 from codesign.geometry.profile import Vector
 
+WIDE = 0.95  # of a letter's height: the width of most letters and digits, with what is between them
 POINT = 72.0 / 25.4  # typographic points of a mm
 
 
@@ -56,6 +57,17 @@ class Word:
     height: float = 2.5
     anchor: str = "left"
     degrees: float = 0.0
+
+    @property
+    def box(self) -> tuple[Vector, Vector]:
+        """Lower left and upper right corner of what it covers, rather too wide."""
+        width = WIDE * self.height * len(self.text)
+        start = {"left": 0.0, "center": -0.5 * width, "right": -width}[self.anchor]
+        turn = np.radians(self.degrees)
+        along, across = np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+        corners = [u * along + v * across for u in (start, start + width) for v in (0.0, self.height)]
+        at = np.array([self.x, self.y])
+        return at + np.min(corners, axis=0), at + np.max(corners, axis=0)
 
 
 @dataclass(eq=False)

@@ -9,6 +9,8 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import TextPath
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopoDS import TopoDS
@@ -19,6 +21,7 @@ from codesign.geometry.features import cylinders, flats
 from codesign.geometry.shape import Frame, at_points, box, cylinder, stepped_hole
 from codesign.parts.bores import bores
 from codesign.parts.drawing import Caption, draw_part
+from codesign.parts.labels import label_circles
 from codesign.parts.sheet import Sheet, write_dxf, write_pdf
 from codesign.parts.step import part_breps
 from codesign.parts.views import project
@@ -114,6 +117,58 @@ def test_inclined_faces_and_bores():
     assert "15°" in words(sheet)
     assert any(text.startswith("VIEW ALONG (0.2588, 0, -0.9659)") for text in words(sheet))
     assert max(line.points[:, 0].max() for line in sheet.lines) <= 410.0
+
+
+def overlaps(sheet: Sheet) -> list[tuple[str, str]]:
+    """Pairs of words whose letters, as the font has them, share a place."""
+    font, boxes = FontProperties(family="DejaVu Sans"), []
+    for word in (word for word in sheet.words if word.text.strip()):
+        right = TextPath((0, 0), word.text, size=word.height / 0.73, prop=font).get_extents().x1
+        left = {"left": 0.0, "center": -0.5 * right, "right": -right}[word.anchor]
+        turn = np.radians(word.degrees)
+        R = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+        corners = np.array([(u, v) for u in (left, left + right) for v in (0.0, word.height)]) @ R.T + [word.x, word.y]
+        low, high = word.box
+        wide = np.ptp(corners, axis=0) <= high - low + 0.6
+        assert wide.all() or len(word.text) < 3 or len(word.text) > 8, word  # what labels are placed by
+        boxes.append((word.text, corners.min(axis=0), corners.max(axis=0)))
+    return [
+        (a, b)
+        for k, (a, low, high) in enumerate(boxes)
+        for b, other_low, other_high in boxes[:k]
+        if (np.minimum(high, other_high) - np.maximum(low, other_low) > 0.05).all()
+    ]
+
+
+def test_no_word_covers_another():
+    """Fifty-five bores on 60 x 40 mm: numbers find room beside each other, dimensions and bores."""
+    drill = stepped_hole((1.0, -1.0, 6.0), (1.6, 6.0, 11.0))
+    places = [(x, y) for x in range(5, 60, 5) for y in (5, 9, 20, 24, 35)]
+    bracket, forearm = JetpackBracket(15, 42), ForearmJetSupport(80, 108)
+    breps = part_breps([bracket, forearm])
+    for brep in (build_brep(box((0, 0, 0), (60, 40, 10)) - at_points(drill, places)), breps[bracket], breps[forearm]):
+        assert overlaps(draw_part(brep, CAPTION)) == []
+
+
+def test_numbers_stand_beside_their_circles():
+    """In a large circle too, over no other one, and without any room on the way out."""
+    sheet = Sheet(100.0, 100.0)
+    circles = {
+        "A": (np.array([50.0, 50.0]), 20.0),
+        "B": (np.array([45.0, 50.0]), 2.0),
+        "C": (np.array([55.0, 50.0]), 2.0),
+    }
+    label_circles(sheet, circles, 2.0)
+    placed = {word.text: word.box for word in sheet.words}
+    for name in ("B", "C"):
+        for point in placed[name]:
+            assert np.linalg.norm(point - circles["A"][0]) < 20.0
+            assert all(np.linalg.norm(point - circles[other][0]) > 2.0 for other in ("B", "C"))
+    assert all(np.linalg.norm(point - circles["A"][0]) > 20.0 for point in placed["A"])
+    full = Sheet(100.0, 100.0)
+    full.write("X" * 200, 50.0, 0.0, 100.0, "center")
+    label_circles(full, {"A": circles["A"]}, 2.0)
+    assert [word.text for word in full.words][1:] == ["A"]
 
 
 def test_too_large_parts_are_refused():
