@@ -41,9 +41,14 @@ WIDE_LETTERS = 150
 COLORS = {"cpp/dynamics": "#f6e3c5", "cpp/fem": "#dcebd3", "cpp": "#ececec", "": "#d9e6f5"}
 
 
+def chapter() -> str:
+    """The part of the page that has the tables."""
+    return PAGE.read_text(encoding="utf-8").partition("\n## Wings\n")[2].partition("\n## ")[0]
+
+
 def table_words() -> dict[str, str]:
     """Box -> what it knows, from the tables of the page; the row of several names is that of the shared words."""
-    rows = re.findall(r"^\| (`[^|]+`) \| ([^|]+) \|$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    rows = re.findall(r"^\| (`[^|]+`) \| ([^|]+) \|$", chapter(), re.MULTILINE)
     words = {}
     for names, knows in rows:
         listed = re.findall(r"`([^`]+)`", names)
@@ -53,7 +58,7 @@ def table_words() -> dict[str, str]:
 
 def shared_names() -> set[str]:
     """Modules that the page calls shared words."""
-    row = re.search(r"^\| ((?:`\w+`, )+`\w+`) \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    row = re.search(r"^\| ((?:`\w+`, )+`\w+`) \|", chapter(), re.MULTILINE)
     return set(re.findall(r"`(\w+)`", row[1])) if row else set()
 
 
