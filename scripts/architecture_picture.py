@@ -12,6 +12,7 @@ import sys
 import textwrap
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from functools import cache
 from html import escape
 from pathlib import Path
 
@@ -62,23 +63,20 @@ def shared_names() -> set[str]:
     return set(re.findall(r"`(\w+)`", row[1])) if row else set()
 
 
-def imported(file: Path) -> Iterator[str]:
+@cache
+def imported(file: Path) -> set[str]:
     """Parts of the package that a module imports when it runs."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     hints = [n for n in ast.walk(tree) if isinstance(n, ast.If) and "TYPE_CHECKING" in ast.unparse(n.test)]
     unused = {inner for hint in hints for statement in hint.body for inner in ast.walk(statement)}
+    names = []
     for node in ast.walk(tree):
-        if node in unused:
-            continue
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module == "codesign":
-            names = [f"codesign.{alias.name}" for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            names = [node.module or ""]
-        else:
-            continue
-        yield from (name.split(".")[1] for name in names if name.startswith("codesign."))
+        if isinstance(node, ast.Import) and node not in unused:
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node not in unused:
+            inside = node.module == "codesign"
+            names += [f"codesign.{alias.name}" for alias in node.names] if inside else [node.module or ""]
+    return {name.split(".")[1] for name in names if name.startswith("codesign.")}
 
 
 def python_graph() -> dict[str, set[str]]:

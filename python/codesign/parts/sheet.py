@@ -60,7 +60,7 @@ class Word:
 
     @property
     def box(self) -> tuple[Vector, Vector]:
-        """Lower left and upper right corner of what it covers, rather too wide."""
+        """Lower left and upper right corner (2,) [mm] of what it covers, rather too wide."""
         width = WIDE * self.height * len(self.text)
         start = {"left": 0.0, "center": -0.5 * width, "right": -width}[self.anchor]
         turn = np.radians(self.degrees)
