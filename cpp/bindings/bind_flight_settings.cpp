@@ -226,6 +226,9 @@ void bind_settings(py::module_& m) {
       .def_readwrite("duration", &FlightSettings::duration, "[s]")
       .def_readwrite("torque_updates", &FlightSettings::torque_updates,
                      "of the torque loop per step, evenly spaced")
+      .def_readwrite("hold_inertia", &FlightSettings::hold_inertia,
+                     "torque updates between two momentum QPs take the joint-space inertia of the "
+                     "last momentum QP")
       .def_readwrite("integrator", &FlightSettings::integrator, "of the plant")
       .def_readwrite("substeps", &FlightSettings::substeps, "plant steps per torque update")
       .def_readwrite("rotation_deadband", &FlightSettings::rotation_deadband,

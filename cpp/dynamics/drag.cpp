@@ -23,10 +23,24 @@ void Drag::add_forces(const Model& model, const RobotTerms& terms,
     const BodyPose& pose = terms.kin.bodies[index];
     const BodyVelocity& velocity = terms.velocity.bodies[index];
     const Vector3d arm = pose.R * area.position;
-    const Vector3d against_air = velocity.linear + velocity.angular.cross(arm) - wind_;
-    const Vector3d force = -area.factor * against_air.norm() * against_air;
-    add_point_force(model, terms.kin, area.body, pose.p + arm, force, generalized);
+    add_point_force(model, terms.kin, area.body, pose.p + arm,
+                    force(area, velocity.linear + velocity.angular.cross(arm)), generalized);
   }
+}
+
+void Drag::push(PairedBodies& bodies) const {
+  for (const Area& area : areas_) {
+    const Vector3d arm = bodies.rotation(area.body) * area.position;
+    const Vector3d pushing = force(
+        area, bodies.linear_velocity(area.body) + bodies.angular_velocity(area.body).cross(arm));
+    bodies.push(area.body, pushing, arm.cross(pushing));
+  }
+}
+
+// velocity: of the area's point, world axes.
+Vector3d Drag::force(const Area& area, const Vector3d& velocity) const {
+  const Vector3d against_air = velocity - wind_;
+  return -area.factor * against_air.norm() * against_air;
 }
 
 }  // namespace codesign::dynamics

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dynamics/flight_settings.hpp"
+#include "dynamics/paired/paired_bodies.hpp"
 #include "dynamics/robot_terms.hpp"
 
 namespace codesign::dynamics {
@@ -17,12 +18,17 @@ class Drag {
   void add_forces(const Model& model, const RobotTerms& terms,
                   Eigen::Ref<Eigen::VectorXd> generalized) const;
 
+  // Pushes the bodies at the state they were moved to.
+  void push(PairedBodies& bodies) const;
+
  private:
   struct Area {
     int body;
     Eigen::Vector3d position;  // body axes [m]
     double factor;             // ½ ρ C_d A [kg/m]
   };
+  Eigen::Vector3d force(const Area& area, const Eigen::Vector3d& velocity) const;
+
   std::vector<Area> areas_;
   Eigen::Vector3d wind_;
 };

@@ -156,6 +156,9 @@ struct FlightSettings {
   double step = 0.0;       // of the momentum loop, jets and samples [s]
   double duration = 0.0;   // [s]; samples at 0, step, … up to and including the end
   int torque_updates = 1;  // of the torque loop per step, evenly spaced
+  // Torque updates between two momentum QPs take the joint-space inertia of the last momentum QP;
+  // all forces are those of the time.
+  bool hold_inertia = false;
   Integrator integrator = Integrator::kEuler;
   int substeps = 1;  // plant steps per torque update
   // Base rotations of a plant step below this angle are dropped [rad]. The published program drops

@@ -43,6 +43,7 @@ Plant::Plant(const Model& model, const FlightSettings& settings)
       thrust_scale_(
           thrust_scales(settings.disturbances, static_cast<int>(settings.actuators.size()))),
       thrust_(thrust_scale_),
+      torque_(Eigen::VectorXd::Zero(model.joint_count())),
       terms_(model, settings.actuators, settings.rotor_inertia),
       joint_space_(model.joint_count()),
       stage_(zero_state(model)),
@@ -51,6 +52,8 @@ Plant::Plant(const Model& model, const FlightSettings& settings)
     v->setZero(model.dofs());
   }
   if (settings.tank) fill_tank(*settings.tank);
+  jets_ = mount_jets(model, settings.actuators);
+  if (!model.mimics) bodies_.emplace(model_, settings.rotor_inertia);
 }
 
 void Plant::fill_tank(const Tank& tank) {
@@ -72,9 +75,10 @@ void Plant::fill_tank(const Tank& tank) {
 void Plant::burn() {
   if (tank_body_ == kNone) return;
   fuel_ -= consumption_ * thrust_.sum() * step_ * substeps_;
-  model_.bodies[static_cast<std::size_t>(tank_body_)].inertia =
-      full_ +
-      RigidInertia{std::max(fuel_, 0.0) - tank_size_, fuel_position_, Eigen::Matrix3d::Zero()};
+  RigidInertia& carrier = model_.bodies[static_cast<std::size_t>(tank_body_)].inertia;
+  carrier = full_ + RigidInertia{std::max(fuel_, 0.0) - tank_size_, fuel_position_,
+                                 Eigen::Matrix3d::Zero()};
+  if (bodies_) bodies_->set_inertia(tank_body_, carrier);
 }
 
 void Plant::acceleration(const RobotState& state, const RobotTerms& terms, JointSpace& joint_space,
@@ -91,7 +95,22 @@ void Plant::acceleration(const RobotState& state, const RobotTerms& terms, Joint
   joint_space.acceleration(inputs.torque, force_, nu_dot_);
 }
 
+bool Plant::by_articulated_bodies(const RobotState& state, const PlantInputs& inputs) {
+  bodies_->move(state.base.R, state.joints, state.velocity);
+  thrust_ = inputs.thrust.cwiseProduct(thrust_scale_);
+  push_jets(jets_, thrust_, *bodies_);
+  bodies_->push(0, inputs.base_force, inputs.base_moment);
+  if (!inputs.com_force.isZero(0.0)) {
+    bodies_->push(0, inputs.com_force, bodies_->center_of_mass().cross(inputs.com_force));
+  }
+  drag_.push(*bodies_);
+  torque_ = inputs.torque;
+  add_friction(friction_, state.velocity.tail(torque_.size()), torque_);
+  return bodies_->accelerate(torque_, nu_dot_);
+}
+
 bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs) {
+  if (bodies_) return by_articulated_bodies(state, inputs);
   update_motion_terms(model_, state, terms_);
   if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return false;
   acceleration(state, terms_, joint_space_, inputs);
@@ -100,24 +119,34 @@ bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs) {
 
 bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                     RobotState& state) {
+  if (!has_model_masses_) return advance(inputs, state);
   for (int i = 0; i < substeps_; ++i) {
-    const bool terms_known = i == 0 && has_model_masses_;
-    if (terms_known) {
+    if (i == 0) {
       acceleration(state, terms, joint_space, inputs);
     } else if (!acceleration(state, inputs)) {
       return false;
     }
-    if (integrator_ == Integrator::kRungeKutta4) {
-      if (!runge_kutta(inputs, state)) return false;
-      continue;
-    }
-    if (integrator_ == Integrator::kEuler) rate_ = step_ * state.velocity;
-    state.velocity += step_ * nu_dot_;
-    if (integrator_ == Integrator::kSemiImplicitEuler) rate_ = step_ * state.velocity;
-    if (rate_.segment<3>(3).norm() < rotation_deadband_) rate_.segment<3>(3).setZero();
-    displace(rate_, state);
+    if (!substep(inputs, state)) return false;
+  }
+  return true;
+}
+
+bool Plant::advance(const PlantInputs& inputs, RobotState& state) {
+  for (int i = 0; i < substeps_; ++i) {
+    if (!acceleration(state, inputs) || !substep(inputs, state)) return false;
   }
   burn();
+  return true;
+}
+
+// One substep from the state at which nu_dot_ holds the acceleration.
+bool Plant::substep(const PlantInputs& inputs, RobotState& state) {
+  if (integrator_ == Integrator::kRungeKutta4) return runge_kutta(inputs, state);
+  if (integrator_ == Integrator::kEuler) rate_ = step_ * state.velocity;
+  state.velocity += step_ * nu_dot_;
+  if (integrator_ == Integrator::kSemiImplicitEuler) rate_ = step_ * state.velocity;
+  if (rate_.segment<3>(3).norm() < rotation_deadband_) rate_.segment<3>(3).setZero();
+  displace(rate_, state);
   return true;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "dynamics/drag.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "dynamics/joint_space.hpp"
+#include "dynamics/paired/jet_mounts.hpp"
+#include "dynamics/paired/paired_bodies.hpp"
 #include "dynamics/robot_terms.hpp"
 
 namespace codesign::dynamics {
@@ -29,12 +32,17 @@ class Plant {
   bool advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                RobotState& state);
 
+  // The same without terms.
+  bool advance(const PlantInputs& inputs, RobotState& state);
+
   double fuel_left() const { return fuel_; }  // [kg]; negative: more was burnt than there was
 
  private:
   bool acceleration(const RobotState& state, const PlantInputs& inputs);
+  bool by_articulated_bodies(const RobotState& state, const PlantInputs& inputs);
   void acceleration(const RobotState& state, const RobotTerms& terms, JointSpace& joint_space,
                     const PlantInputs& inputs);
+  bool substep(const PlantInputs& inputs, RobotState& state);
   bool runge_kutta(const PlantInputs& inputs, RobotState& state);
   void fill_tank(const Tank& tank);
   void burn();
@@ -52,8 +60,10 @@ class Plant {
   double step_;  // of one substep [s]
   double rotation_deadband_;
   bool has_model_masses_;
-  Eigen::VectorXd thrust_scale_, thrust_, force_, nu_dot_;
-  RobotTerms terms_;  // at the inner stages
+  Eigen::VectorXd thrust_scale_, thrust_, torque_, force_, nu_dot_;
+  std::vector<JetMount> jets_;
+  std::optional<PairedBodies> bodies_;  // where no bodies share a joint
+  RobotTerms terms_;                    // else
   JointSpace joint_space_;
   RobotState stage_, origin_;
   Eigen::VectorXd rate_, rate_sum_, acceleration_sum_;

@@ -25,7 +25,23 @@ TorqueController::TorqueController(const FlightSettings& settings)
 // Minimize ½|W τ + s̈₀ − s̈*|² + ½ε|τ|² with W = M̂⁻¹ and s̈₀ = W f̂. Multiplied by M̂², the normal
 // equations (W² + εI) τ = W (s̈* − s̈₀) become (I + ε M̂²) τ = M̂ s̈* − f̂: no inverse, and a condition
 // number close to one, also where M̂ is nearly singular or indefinite.
+bool TorqueController::renew(const JointSpace& joint_space) {
+  const Eigen::MatrixXd& inertia = joint_space.joint_inertia();
+  const int n = static_cast<int>(inertia.rows());
+  system_.setIdentity();
+  add_outer_product(system_.data(), n, n, inertia.data(), n, n, weight_);
+  return cholesky_in_place(system_.data(), n, n);
+}
+
 QpStatus TorqueController::update(const JointSpace& joint_space,
+                                  const Eigen::Ref<const Eigen::VectorXd>& joint_force,
+                                  const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
+                                  const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity) {
+  if (!renew(joint_space)) return QpStatus::kNotPositiveDefinite;
+  return follow(joint_space, joint_force, joint_velocity, commanded_velocity);
+}
+
+QpStatus TorqueController::follow(const JointSpace& joint_space,
                                   const Eigen::Ref<const Eigen::VectorXd>& joint_force,
                                   const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
                                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity) {
@@ -37,11 +53,7 @@ QpStatus TorqueController::update(const JointSpace& joint_space,
   error_integral_ += step_ * velocity_error_;
   right_side_.noalias() = inertia * solution_;
   right_side_ -= joint_force;
-
-  system_.setIdentity();
-  add_outer_product(system_.data(), n, n, inertia.data(), n, n, weight_);
   iterations_ = 1;
-  if (!cholesky_in_place(system_.data(), n, n)) return QpStatus::kNotPositiveDefinite;
   solution_ = right_side_;
   cholesky_solve(system_.data(), n, n, solution_.data());
   if (!solution_.allFinite()) return QpStatus::kBadData;

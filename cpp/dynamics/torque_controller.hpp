@@ -20,6 +20,14 @@ class TorqueController {
                   const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity);
 
+  // The two halves of it: renew() takes the joint-space inertia into the least squares, false if
+  // that is not positive definite; follow() may be called again with the inertia taken last.
+  bool renew(const JointSpace& joint_space);
+  QpStatus follow(const JointSpace& joint_space,
+                  const Eigen::Ref<const Eigen::VectorXd>& joint_force,
+                  const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
+                  const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity);
+
   const Eigen::VectorXd& torque() const { return torque_; }  // of the last update (n,) [Nm]
   int iterations() const { return iterations_; }             // factorizations of the last update
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "dynamics/disturbance.hpp"
 #include "dynamics/drives.hpp"
@@ -11,6 +12,7 @@
 #include "dynamics/flight/predictive_flight.hpp"
 #include "dynamics/momentum_controller.hpp"
 #include "dynamics/momentum_observer.hpp"
+#include "dynamics/paired/jet_mounts.hpp"
 #include "dynamics/plant.hpp"
 #include "dynamics/torque_controller.hpp"
 #include "interrupt.hpp"
@@ -34,7 +36,7 @@ class Flight {
   void advance_jets(int k);
   bool update_dynamics();
   FailureReason control(int k);
-  FailureReason update_torque();
+  FailureReason update_torque(bool held);
   FailureReason check_limits();
   void command_jets();
   void log_sample(int k);
@@ -68,6 +70,8 @@ class Flight {
   DelayLine outputs_;  // of the momentum QP
   BoxQpSolver qp_solver_;
   TorqueController torque_controller_;
+  std::vector<JetMount> mounts_;
+  std::optional<PairedBodies> bodies_;  // for torques with a held inertia
   double com_error_ = 0.0, attitude_error_ = 0.0;
   FlightLog log_;
   Stopwatch watch_;
@@ -103,6 +107,10 @@ Flight::Flight(const Model& model, const FlightSettings& settings, const FlightS
   for (Eigen::VectorXd* v : {&joint_velocity_, &joint_force_}) v->setZero(joints);
   force_.setZero(model.dofs());
   for (const double thrust : start.thrusts) jets_.push_back({thrust, 0.0});
+  if (settings.hold_inertia && settings.torque_updates > 1 && !model.mimics) {
+    mounts_ = mount_jets(model, settings.actuators);
+    bodies_.emplace(model, settings.rotor_inertia);
+  }
 }
 
 // Item 1: the state moves on under the thrusts of the last step; the torques, too, or as often as
@@ -115,14 +123,19 @@ FailureReason Flight::advance_plant(int k) {
   inputs_.com_force = pulse.force;
   inputs_.base_moment = pulse.moment;
   for (int i = 0; i < settings_.torque_updates; ++i) {
+    const bool held = i > 0 && bodies_;
     if (i > 0) {
-      update_motion_terms(model_, state_, terms_);
-      if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return FailureReason::kSingularMass;
-      const FailureReason reason = k > 0 ? update_torque() : FailureReason::kNotFailed;
+      if (!held) {
+        update_motion_terms(model_, state_, terms_);
+        if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return FailureReason::kSingularMass;
+      }
+      const FailureReason reason = k > 0 ? update_torque(held) : FailureReason::kNotFailed;
       if (reason != FailureReason::kNotFailed) return reason;
     }
     inputs_.base_force = gusts_.at(k > 0 ? start + (i + 0.5) * torque_period_ : start);
-    if (!plant_.advance(terms_, joint_space_, inputs_, state_)) return FailureReason::kSingularMass;
+    const bool moved = held ? plant_.advance(inputs_, state_)
+                            : plant_.advance(terms_, joint_space_, inputs_, state_);
+    if (!moved) return FailureReason::kSingularMass;
   }
   return plant_.fuel_left() < 0.0 ? FailureReason::kNoFuel : FailureReason::kNotFailed;
 }
@@ -171,19 +184,27 @@ FailureReason Flight::control(int k) {
   joint_velocity_ = outputs.tail(joint_velocity_.size());
   command_jets();
   inputs_.thrust = thrust_;
-  const FailureReason reason = update_torque();
+  const FailureReason reason = update_torque(false);
   watch_.lap(log_.profile.torque);
   return reason;
 }
 
-// Item 5, also between the samples: torques for the joint velocities commanded last.
-FailureReason Flight::update_torque() {
-  force_ = -terms_.bias;
-  add_jet_forces(model_, terms_, thrust_, force_);
+// Item 5, also between the samples: torques for the joint velocities commanded last. Held: with the
+// joint-space inertia of the sample.
+FailureReason Flight::update_torque(bool held) {
+  if (held) {
+    bodies_->move(state_.base.R, state_.joints, state_.velocity);
+    push_jets(mounts_, thrust_, *bodies_);
+    bodies_->generalized_forces(force_);
+  } else {
+    force_ = -terms_.bias;
+    add_jet_forces(model_, terms_, thrust_, force_);
+    if (!torque_controller_.renew(joint_space_)) return FailureReason::kTorqueQp;
+  }
   joint_space_.reduce_force(force_, joint_force_);
-  if (torque_controller_.update(joint_space_, joint_force_,
-                                state_.velocity.tail(model_.joint_count()),
-                                joint_velocity_) != QpStatus::kSolved) {
+  const auto joint_velocity = state_.velocity.tail(model_.joint_count());
+  if (torque_controller_.follow(joint_space_, joint_force_, joint_velocity, joint_velocity_) !=
+      QpStatus::kSolved) {
     return FailureReason::kTorqueQp;
   }
   inputs_.torque = drives_.act(torque_controller_.torque());

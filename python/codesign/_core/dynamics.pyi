@@ -2013,6 +2013,13 @@ class FlightSettings:
     @groups.setter
     def groups(self, arg0: collections.abc.Sequence[JointGroup]) -> None: ...
     @property
+    def hold_inertia(self) -> bool:
+        """
+        torque updates between two momentum QPs take the joint-space inertia of the last momentum QP
+        """
+    @hold_inertia.setter
+    def hold_inertia(self, arg0: bool) -> None: ...
+    @property
     def initial_free_fall(self) -> bool:
         """
         first step without jets and torques, as published

@@ -176,6 +176,7 @@ def _set_rates(settings: dyn.FlightSettings, flight: FlightConfig) -> None:
     torque_step = flight.torque_step_s or flight.step_s
     settings.step = flight.step_s
     settings.torque_updates = round(flight.step_s / torque_step)
+    settings.hold_inertia = flight.hold_inertia
     settings.substeps = round(torque_step / (flight.plant_step_s or torque_step))
     settings.integrator = getattr(dyn.Integrator, flight.integrator)
 

@@ -194,6 +194,7 @@ class FlightConfig(Section, frozen=True, kw_only=True):
     step_s: Positive
     torque_step_s: Positive | None = None
     plant_step_s: Positive | None = None
+    hold_inertia: bool = False
     integrator: Literal["euler", "semi_implicit_euler", "runge_kutta_4"] = "euler"
     duration_s: Positive
     seeds: list[Seed] = []

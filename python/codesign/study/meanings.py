@@ -79,6 +79,7 @@ _MEANINGS: dict[str, dict[str, str]] = {
         "step_s": "of momentum control, jets and log",
         "torque_step_s": "of torque control, a whole fraction of step_s; default: step_s",
         "plant_step_s": "of the simulation, a whole fraction of torque_step_s; default: torque_step_s",
+        "hold_inertia": "torque control between two momentum QPs takes the joint-space inertia of the last one",
         "integrator": "of the simulation; `runge_kutta_4` is of fourth order, the others of first",
         "seeds": "of the trajectory's disturbances: a flight for each, objectives are means, constraints hold for all",
         "duration_s": "of a flight",

@@ -141,6 +141,15 @@ def test_a_flight_at_half_its_steps_meets_the_same_gusts() -> None:
     assert np.sqrt((errors[0] ** 2).mean()) == pytest.approx(np.sqrt((errors[1] ** 2).mean()), rel=0.03)
 
 
+def test_an_inertia_held_between_momentum_qps_changes_little() -> None:
+    settings = hovering()
+    renewed = rms(dyn.simulate_flight(robot(ORIGINAL), settings))
+    settings.hold_inertia = True
+    held = rms(dyn.simulate_flight(robot(ORIGINAL), settings))
+    assert held != renewed
+    assert held == pytest.approx(renewed, rel=2e-3)
+
+
 def test_what_a_tank_holds_ends_the_flight() -> None:
     settings = hovering(5.0)
     settings.duration, settings.trajectory = 4.0, []

@@ -35,6 +35,7 @@ TEST_P(FlightAllocationTest, LoopDoesNotAllocate) {
   settings.substeps = 2;
   EXPECT_EQ(allocations(settings, 4.0), allocations(settings, 0.4));
   settings.torque_updates = 4;
+  settings.hold_inertia = true;
   settings.gains.observer = 5.0;
   settings.rotor_inertia = settings.friction.viscous = Eigen::VectorXd::Constant(6, 0.05);
   settings.friction.coulomb = Eigen::VectorXd::Constant(6, 0.1);
