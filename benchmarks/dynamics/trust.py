@@ -2,18 +2,22 @@
 
   python benchmarks/dynamics/trust.py steps --designs 28     # ranks of designs, and their front, at half of all steps
   python benchmarks/dynamics/trust.py seeds --seeds 20 --design 15 42 80 108 --design 4 40 98 118
+  python benchmarks/dynamics/trust.py hold --designs 6       # torques held for 8 ms against a torque loop of 1 ms
   python benchmarks/dynamics/trust.py time --repeats 5       # CPU of a flight over that of the study as published
 
 Designs of `steps`: published ones and Sobol points; of each the flights under its seeds, calm and at half steps.
-The share is that of the squared momentum errors before 2 s.
+The share is that of the squared momentum errors before 2 s. With `--log FILE` designs flown before are not flown again.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import statistics
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.stats import qmc, spearmanr
@@ -89,22 +93,55 @@ def calm_and_halved(settings: dyn.FlightSettings) -> None:
     halve(settings)
 
 
-def steps(study: codesign.Study, count: int, draws: int) -> None:
+Figures = dict[str, Any]
+
+
+def figures(study: codesign.Study, theta: Sequence[int], seeds: Sequence[int]) -> Figures:
+    """Objectives of a design, calm and disturbed, at the study's steps and at half of them; `share` of each flight."""
+    logs = fly(study, theta, seeds)
+    return {
+        "calm": objectives(fly(study, theta, seeds[:1], calm)),
+        "calm, halved": objectives(fly(study, theta, seeds[:1], calm_and_halved)),
+        "disturbed": objectives(logs),
+        "disturbed, halved": objectives(fly(study, theta, seeds, halve)),
+        "share": [early_share(log) for log in logs],
+        "thrust": [log.max_thrust for log in logs],
+    }
+
+
+def steps(study: codesign.Study, count: int, draws: int, file: Path | None) -> None:
     """Objectives at the study's steps against half of them, calm and disturbed."""
     seeds = (study.config.flown.seeds or [0])[:draws]
-    whole: dict[str, list[list[float]]] = {"calm": [], "disturbed": []}
-    halved: dict[str, list[list[float]]] = {"calm": [], "disturbed": []}
-    shares = []
+    known: dict[str, Figures] = json.loads(file.read_text()) if file and file.exists() else {}
+    found = []
     for theta in pool(count):
-        whole["calm"].append(objectives(fly(study, theta, seeds[:1], calm)))
-        halved["calm"].append(objectives(fly(study, theta, seeds[:1], calm_and_halved)))
-        logs = fly(study, theta, seeds)
-        shares += [early_share(log) for log in logs]
-        whole["disturbed"].append(objectives(logs))
-        halved["disturbed"].append(objectives(fly(study, theta, seeds, halve)))
-    for kind in whole:
-        compare(kind, np.array(whole[kind]), np.array(halved[kind]))
-    print(f"share of squared momentum error before {BEGINNING:g} s: largest {max(shares):.1%}")
+        key = f"{study.config.name} {theta} {seeds}"
+        if key not in known:
+            known[key] = figures(study, theta, seeds)
+            if file:
+                file.write_text(json.dumps(known))
+        found.append(known[key])
+    for kind in ("calm", "disturbed"):
+        compare(kind, *(np.array([row[key] for row in found]) for key in (kind, f"{kind}, halved")))
+    shares, thrusts = ([value for row in found for value in row[key]] for key in ("share", "thrust"))
+    print(f"share of squared momentum error before {BEGINNING:g} s: largest {max(shares):.1%} of {len(shares)} flights")
+    print(f"largest thrust: {max(thrusts):.1f} N")
+
+
+def hold(study: codesign.Study, count: int) -> None:
+    """Joint velocity under torques held for the 8 ms of one loop, against a torque loop of 1 ms; calm, no delays."""
+
+    def rates(updates: int) -> Change:
+        def change(settings: dyn.FlightSettings) -> None:
+            calm(settings)
+            settings.delays = dyn.Delays()
+            settings.step, settings.torque_updates, settings.substeps = 0.008, updates, 8 // updates
+
+        return change
+
+    for theta in pool(count):
+        held, fast = (objectives(fly(study, theta, [0], rates(updates)))[1] for updates in (1, 8))
+        print(f"{theta}: joint velocity {held:.4f} held, {fast:.4f} at 1 ms, {held / fast - 1.0:+.1%}", flush=True)
 
 
 def compare(kind: str, whole: np.ndarray, halved: np.ndarray) -> None:
@@ -169,19 +206,22 @@ def cpu(work: Callable[[], object]) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["steps", "seeds", "time"])
+    parser.add_argument("what", choices=["steps", "seeds", "hold", "time"])
     parser.add_argument("--study", default="ironcub_robust")
     parser.add_argument("--designs", type=int, default=28)
     parser.add_argument("--draws", type=int, default=3, help="of the study's seeds, in `steps`")
+    parser.add_argument("--log", type=Path, help="file of the designs flown so far, in `steps`")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--design", type=int, nargs="+", action="append", default=[])
     asked = parser.parse_args()
     study = codesign.load_study(asked.study)
     if asked.what == "steps":
-        steps(study, asked.designs, asked.draws)
+        steps(study, asked.designs, asked.draws, asked.log)
     elif asked.what == "seeds":
         seeds(study, asked.design or PUBLISHED[:1], asked.seeds)
+    elif asked.what == "hold":
+        hold(study, asked.designs)
     else:
         times(study, asked.repeats)
 
