@@ -73,7 +73,7 @@ setup: $(VENV)/runtime.stamp
 
 # --- the two commands ----------------------------------------------------------------------------------------------------
 run: setup
-	$(BIN)/codesign optimize --population 12 --generations 3 --seed 1 --out $(RUN_DIR)
+	$(BIN)/codesign optimize --algorithm surrogate --evaluations 40 --seed 1 --out $(RUN_DIR)
 	$(BIN)/codesign report $(RUN_DIR)
 
 test: check

@@ -50,10 +50,10 @@ def test_shells_complete_commands_studies_and_variables(line, offered):
     ("arguments", "message"),
     [
         (("evaluate", "--set", "angle=15"), "no value for design variable 'distance'"),
-        (("evaluate", *ORIGINAL, "--set", "wing=1"), "unknown design variable 'wing'"),
+        (("evaluate", *PUBLISHED, *ORIGINAL, "--set", "wing=1"), "unknown design variable 'wing'"),
         (("evaluate", "--set", "angle"), "expected NAME=VALUE"),
         (("evaluate", "--study", "nowhere", *ORIGINAL), "no such study"),
-        (("evaluate", *ORIGINAL, "--trajectory", "loop"), "no trajectory 'loop'"),
+        (("evaluate", *PUBLISHED, *ORIGINAL, "--trajectory", "loop"), "no trajectory 'loop'"),
         (("fly", "absent.urdf"), "absent.urdf"),
         (("resume", "absent"), "absent"),
         (("validate", "absent"), "absent"),

@@ -1,4 +1,4 @@
-"""The two studies of the iRonCub: one as published, one that states what it does differently."""
+"""The studies of the iRonCub: as published, flown as a robot would fly, with loads and materials, with flown loads."""
 
 import tomllib
 
@@ -7,6 +7,7 @@ import pytest
 
 from codesign import dynamics as dyn
 from codesign import load_study
+from codesign.chain.chain import stress_settings
 from codesign.chain.flight import find_trajectory, flight_seeds, flight_settings, joint_names
 from codesign.study.loading import STUDIES
 
@@ -76,3 +77,32 @@ def test_the_robust_study_flies_three_paired_draws_of_the_unknown(flown):
     assert all(0.05 < log.fuel_burnt < 0.08 for log in logs)
     shares = [np.abs(log.unmodeled_force[:, :3]).max() for log in logs]
     assert min(shares) > 2.0
+
+
+def test_the_default_study_flies_as_the_robust_one():
+    default, robust = load_study().config, load_study("ironcub_robust").config
+    assert default.name == "ironcub"
+    for section in ("flight", "trajectories", "constraints", "interference", "objectives", "robot"):
+        assert getattr(default, section) == getattr(robust, section)
+
+
+def test_parts_of_the_default_study_are_of_one_material_which_is_a_choice():
+    study = load_study()
+    masses = {}
+    for name, density in (("ergal", 2800.0), ("ti-6al-4v", 4430.0)):
+        design = study.space.design([*DESIGN, name, name])
+        parts = study.build_parts(design)
+        assert {part.density for part in parts.values()} == {density}
+        masses[name] = dyn.load_urdf(study.build_robot(design), joints=joint_names(study.config.flown)).total_mass
+        for part in parts:
+            assert stress_settings(study.configured(design), part).material.name == name
+    assert 0.5 < masses["ti-6al-4v"] - masses["ergal"] < 2.0  # two brackets, two supports: 1.7 kg of Ergal
+
+
+def test_the_study_of_flown_loads_is_the_default_one_and_a_case_more():
+    default, strength = load_study(), load_study("ironcub_strength")
+    assert strength.config.variables == default.config.variables
+    for part, more in zip(default.config.parts, strength.config.parts, strict=True):
+        assert more.cases[:-1] == part.cases
+        assert (more.cases[-1].name, more.masses) == ("flown", part.masses)
+        assert [case.safety_factor_min for case in more.cases] == [10.0, 10.0, 1.0, 2.0, 2.0, 2.0, 10.0]
