@@ -60,3 +60,23 @@ def test_code_of_the_page_on_runs_reads_that_run(tutorial, monkeypatch, capsys):
 def test_links_to_pages_lead_somewhere(page):
     for target, _ in LINK.findall((DOCS / page).read_text()):
         assert target.startswith("api/cli") or (DOCS / page).parent.joinpath(target).exists(), target
+
+
+def test_every_page_is_in_the_table_of_contents():
+    """What `make docs` refuses otherwise; api/cli is written by it."""
+    lists = re.findall(r"^```\{toctree\}\n(.*?)^```$", (DOCS / "index.md").read_text(), re.MULTILINE | re.DOTALL)
+    entries = [line for text in lists for line in text.splitlines() if line and not line.startswith(":")]
+    named = {page for entry in entries for page in DOCS.glob(f"{entry}.md")}
+    pages = {page for page in DOCS.rglob("*.md") if page != DOCS / "index.md"}
+    assert {str(page.relative_to(DOCS)) for page in pages - named} == set()
+
+
+def test_pages_link_to_pages_only():
+    """Nothing beside docs/, which the site does not have."""
+    outside = {
+        (page.name, target)
+        for page in DOCS.rglob("*.md")
+        for target, _ in LINK.findall(page.read_text())
+        if not (page.parent / target).resolve().is_relative_to(DOCS)
+    }
+    assert outside == set()
