@@ -23,7 +23,7 @@ def evidence(run: ReportData, validation: Validation | None, k: int) -> Evidence
     """What is known of the change of objective `k` from the original to the recommended design."""
     changes = _changes(run, validation, run.objectives[k].key)
     if not changes:
-        return Evidence("", "one flight, no error estimate")
+        return Evidence("", "no other flights, no error estimate")
     low, high = min(changes), max(changes)
     flights = plural(len(changes), "other flight")
     if len(changes) < ENOUGH or (low <= EQUAL and high >= -EQUAL):

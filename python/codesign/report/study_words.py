@@ -107,8 +107,10 @@ def flight_words(config: StudyConfig) -> str:
     trajectory = config.trajectories[flight.trajectory]
     seconds = trajectory.duration_s or flight.duration_s
     calm = "calm" if trajectory.disturbances == type(trajectory.disturbances)() else "disturbed"
+    draws = len(flight.seeds)
+    what = f"Means of {draws} {calm} flights" if draws > 1 else f"One {calm} flight"
     return (
-        f"One {calm} flight of {seconds:g}\u202fs with {plural(len(flight.jets.frames), 'jet')}, simulated "
+        f"{what} of {seconds:g}\u202fs with {plural(len(flight.jets.frames), 'jet')}, simulated "
         f"in steps of {1e3 * flight.step_s:g}\u202fms. The step enters the numbers, so they compare designs with each "
         "other rather than predict the robot's."
     )

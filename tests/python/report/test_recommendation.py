@@ -152,7 +152,7 @@ def flights(run: ReportData, changes: list[float]) -> Validation:
 
 def test_a_gain_is_green_only_where_all_other_flights_agree(tmp_path, evaluations):
     run = report_data(tmp_path / "run", evaluations)
-    assert evidence(run, None, 2).text == "one flight, no error estimate"
+    assert evidence(run, None, 2).text == "no other flights, no error estimate"
     assert evidence(run, flights(run, [-0.02, -0.01, -0.015]), 2).sense == "good"
     assert evidence(run, flights(run, [0.02, 0.01, 0.015]), 2).sense == "bad"
     mixed = evidence(run, flights(run, [-0.02, 0.01, -0.015]), 2)

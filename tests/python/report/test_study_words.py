@@ -88,6 +88,8 @@ def test_a_density_that_is_not_the_materials_is_said():
 
 def test_a_flight_is_described_by_its_own_duration_and_step():
     assert "20\u202fs with 4 jets, simulated in steps of 8\u202fms" in flight_words(load_study("gimbal_quad").config)
+    assert flight_words(load_study("ironcub_paper").config).startswith("One calm flight of 42\u202fs")
+    assert flight_words(load_study("ironcub_robust").config).startswith("Means of 3 disturbed flights of 42\u202fs")
 
 
 def test_a_flight_without_counted_joint_groups_has_a_history():
