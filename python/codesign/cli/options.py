@@ -41,7 +41,7 @@ ClusterOption = Annotated[str | None, typer.Option(help="Dask scheduler tcp://ho
 RunArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run.")]
 DEFAULT_STUDY = "ironcub"
 INTERRUPTED = 130  # exit code
-EXAMPLE_DESIGN = "--set angle=15 --set distance=42 --set offset=80 --set length=108"
+EXAMPLE_DESIGN = "--study ironcub_paper --set angle=15 --set distance=42 --set offset=80 --set length=108"
 
 
 def parse_design(assignments: list[str]) -> dict[str, DesignValue]:

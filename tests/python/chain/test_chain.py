@@ -91,7 +91,7 @@ def test_steep_bracket_loses_the_flight_and_stays_without_objectives(cache):
 
 def test_evaluate_at_the_top_level_takes_names_or_a_sequence():
     with pytest.raises(DesignError, match="off the grid"):
-        codesign.evaluate([15, 43, 80, 108])
+        codesign.evaluate([15, 43, 80, 108, "ergal", "ti-6al-4v"])
 
 
 def test_second_robot_runs_through_the_same_engine():
