@@ -104,6 +104,7 @@ class Order:
                 f"{part.name}.step",
                 self.organization or self.study.title,
                 tuple(part.fits().items()),
+                tuple(part.positions().items()),
             )
             for part in distinct_parts(self.components)
         }

@@ -36,7 +36,7 @@ class Caption:
 
     name, title: of the part, with its parameters. material; mass [kg]; density [kg/m³]; quantity. design: its values in
     words; revision: its hash. model: file that holds the exact geometry. organization: who has it made. fits: bores'
-    diameter [mm] and class of ISO 286.
+    diameter [mm] and class of ISO 286. positions: faces and widths [mm] of the zones in which they lie.
     """
 
     name: str
@@ -50,6 +50,7 @@ class Caption:
     model: str = ""
     organization: str = ""
     fits: tuple[tuple[float, str], ...] = ()
+    positions: tuple[tuple[str, float], ...] = ()
 
 
 def draw_part(brep: Brep, caption: Caption) -> Sheet:
@@ -309,8 +310,10 @@ def _table(sheet: Sheet, holes: Sequence[Bore], top: float) -> None:
 
 def _notes(sheet: Sheet, caption: Caption) -> None:
     fits = ", ".join(f"⌀{diameter:g} {fit}" for diameter, fit in caption.fits)
+    places = ", ".join(f"{face} {width:g}" for face, width in caption.positions)
     lines = (
         *([f"Fits of bores (ISO 286): {fits}."] if fits else []),
+        *([f"Position against datum A, the largest named flat face: {places}."] if places else []),
         f"General tolerances {TOLERANCE}. Lengths in mm. Coordinates are those of the part's frame, as in the model.",
         f"What is not dimensioned is as in {caption.model or 'the model'}, revision {caption.revision or '-'}.",
         "Not stated by the design: threads, other fits, surface finish, edges, heat treatment, coating.",

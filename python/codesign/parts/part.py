@@ -93,6 +93,13 @@ class Part(ABC):
         """Fits of bores: diameter [mm] -> class of ISO 286, as `H7`; written into the STEP file and on the drawing."""
         return {}
 
+    def positions(self) -> dict[str, float]:
+        """Face -> width [mm] of the zone about its place in which it must lie, against the largest named flat face.
+
+        Of named flat faces; written into the STEP file and on the drawing, where that one is datum A.
+        """
+        return {}
+
     def check(self) -> None:  # noqa: B027 (most parts need no more than the ranges of their parameters)
         """Refuses parameter values that give no sound part, by `limit`; called on construction."""
 
@@ -176,6 +183,10 @@ class MirroredPart(Part):
     def fits(self) -> dict[float, str]:
         """Of the original: diameter [mm] -> tolerance."""
         return self.original.fits()
+
+    def positions(self) -> dict[str, float]:
+        """Those of the original."""
+        return self.original.positions()
 
     def solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
         """The mirror image of the original's mesh."""

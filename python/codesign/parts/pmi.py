@@ -22,6 +22,7 @@ from OCP.XCAFDimTolObjects import (
 )
 from OCP.XCAFDoc import XCAFDoc_Datum, XCAFDoc_Dimension, XCAFDoc_DocumentTool, XCAFDoc_GeomTolerance
 
+from codesign.errors import GeometryError
 from codesign.geometry.brep import Brep
 from codesign.geometry.features import cylinders, flats
 from codesign.parts.tolerances import GENERAL, bore_fit, general_flatness, general_length
@@ -34,26 +35,33 @@ def add_tolerances(
     product: TDF_Label,
     brep: Brep,
     fits: Mapping[float, str],
+    positions: Mapping[str, float],
     label: Callable[[TopoDS_Shape], TDF_Label],
 ) -> None:
-    """Adds diameters of bores, a datum, flatness and the general tolerance to a product.
+    """Adds diameters of bores, a datum, flatness, positions and the general tolerance to a product.
 
     Bores have their fit or the general tolerance; the largest named flat face is datum A; named flat faces have the
     flatness of the general tolerance, which is also a property of the product.
 
-    fits: diameter [mm] -> class of ISO 286. label: of a face of the product.
+    fits: diameter [mm] -> class of ISO 286. positions: face -> width [mm] of the zone about its place against datum A.
+    label: of a face of the product.
+    Raises: GeometryError for the position of what is no named flat face, or is the datum.
     """
     tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
     for cylinder in cylinders(brep):
         if cylinder.hollow:
             _add_diameter(tool, label(cylinder.face), 2.0 * cylinder.radius, fits)
-    datum = None
-    for plane in flats(brep):
-        if not any(face.IsSame(plane.face) for face, _ in brep.named_faces):
-            continue
-        if datum is None:
-            datum = _add_datum(tool, label(plane.face))
-        _add_flatness(tool, label(plane.face), general_flatness(_size(plane.face)))
+    named = [(plane.face, name) for plane in flats(brep) for face, name in brep.named_faces if face.IsSame(plane.face)]
+    datum = _add_datum(tool, label(named[0][0])) if named else None
+    for name in positions:
+        if name not in {other for _, other in named[1:]}:
+            raise GeometryError(f"position of {name!r}: the part has no flat face of that name beside its datum")
+    for number, (face, name) in enumerate(named):
+        flat = XCAFDimTolObjects_GeomToleranceType.XCAFDimTolObjects_GeomToleranceType_Flatness
+        _add_form(tool, label(face), flat, general_flatness(_size(face)))
+        if number and name in positions:
+            place = XCAFDimTolObjects_GeomToleranceType.XCAFDimTolObjects_GeomToleranceType_Position
+            tool.SetDatumToGeomTol(datum, _add_form(tool, label(face), place, positions[name]))
     data = TDataStd_NamedData.Set_s(product)
     data.SetString(TCollection_ExtendedString("general tolerance"), TCollection_ExtendedString(GENERAL))
 
@@ -72,13 +80,15 @@ def _add_diameter(tool: object, face: TDF_Label, diameter: float, fits: Mapping[
     XCAFDoc_Dimension.Set_s(dimension).SetObject(item)
 
 
-def _add_flatness(tool: object, face: TDF_Label, value: float) -> None:
+def _add_form(tool: object, face: TDF_Label, kind: XCAFDimTolObjects_GeomToleranceType, value: float) -> TDF_Label:
+    """A geometric tolerance of a face."""
     tolerance = tool.AddGeomTolerance()  # type: ignore[attr-defined]
     tool.SetGeomTolerance(face, tolerance)  # type: ignore[attr-defined]
     item = XCAFDimTolObjects_GeomToleranceObject()
-    item.SetType(XCAFDimTolObjects_GeomToleranceType.XCAFDimTolObjects_GeomToleranceType_Flatness)
+    item.SetType(kind)
     item.SetValue(value)
     XCAFDoc_GeomTolerance.Set_s(tolerance).SetObject(item)
+    return tolerance
 
 
 def _add_datum(tool: object, face: TDF_Label) -> TDF_Label:

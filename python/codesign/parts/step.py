@@ -74,14 +74,15 @@ def write_step(
 ) -> None:
     """One part as a solid with its name, the names and colors of its faces; `brep`: its exact solid, if already built.
 
-    In AP242 with tolerances that programs read: diameters of bores with the part's `fits`, flatness of named faces.
+    In AP242 with tolerances that programs read: diameters of bores with the part's `fits`, flatness of named
+    faces, their `positions`.
     """
     document = _Document()
     solid = brep or part_breps([part])[part]
     product = document.add_part(part.name, solid)
     document.add_colors(product, solid)
     if schema == "AP242":
-        document.add_tolerances(product, solid, part.fits())
+        document.add_tolerances(product, solid, part.fits(), part.positions())
     document.write(path, schema, origin)
 
 
@@ -128,9 +129,11 @@ class _Document:
             color = _color(PALETTE[names.index(name) % len(PALETTE)])
             tool.SetColor(self._face(product, face), color, XCAFDoc_ColorType.XCAFDoc_ColorSurf)
 
-    def add_tolerances(self, product: TDF_Label, brep: Brep, fits: Mapping[float, str]) -> None:
+    def add_tolerances(
+        self, product: TDF_Label, brep: Brep, fits: Mapping[float, str], positions: Mapping[str, float]
+    ) -> None:
         """Semantic tolerances, as `pmi.add_tolerances` says."""
-        add_tolerances(self._document, product, brep, fits, lambda face: self._face(product, face))
+        add_tolerances(self._document, product, brep, fits, positions, lambda face: self._face(product, face))
 
     def _face(self, product: TDF_Label, face: TopoDS_Shape) -> TDF_Label:
         """Label of a face, made if it has none."""

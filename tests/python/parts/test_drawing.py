@@ -1,5 +1,6 @@
 """Drawings: bores as the parts have them, lines on the edges, sizes and captions on the sheet, files that read back."""
 
+import dataclasses
 import re
 import shutil
 import subprocess
@@ -169,6 +170,11 @@ def test_numbers_stand_beside_their_circles():
     full.write("X" * 200, 50.0, 0.0, 100.0, "center")
     label_circles(full, {"A": circles["A"]}, 2.0)
     assert [word.text for word in full.words][1:] == ["A"]
+
+
+def test_positions_are_noted(plate):
+    sheet = draw_part(plate, dataclasses.replace(CAPTION, positions=(("seat", 0.2),)))
+    assert "Position against datum A, the largest named flat face: seat 0.2." in words(sheet)
 
 
 def test_too_large_parts_are_refused():

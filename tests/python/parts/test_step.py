@@ -290,3 +290,40 @@ def test_fits_that_are_not_known() -> None:
 def test_general_tolerances() -> None:
     assert [general_length(size) for size in (1, 5, 6.5, 30, 31, 400)] == [0.1, 0.1, 0.2, 0.2, 0.3, 0.5]
     assert [general_flatness(size) for size in (10, 11, 100, 250)] == [0.05, 0.1, 0.2, 0.4]
+
+
+class Placed(JetpackBracket):
+    """A bracket whose seat has a place."""
+
+    def positions(self) -> dict[str, float]:
+        return {"seat": 0.2}
+
+
+def test_the_position_of_a_face_is_read_back(tmp_path: Path) -> None:
+    """One position, of the seat, against datum A; none where the part says nothing."""
+    write_step(Placed(15, 42), tmp_path / "placed.step")
+    text = (tmp_path / "placed.step").read_text().replace("\n", "")
+    assert len(re.findall(r"POSITION_TOLERANCE", text)) == 1
+    file = StepFile(tmp_path / "placed.step", tolerances=True)
+    tool = XCAFDoc_DocumentTool.DimTolTool_s(file.document.Main())
+    labels = Sequence_TDF_Label()
+    tool.GetGeomToleranceLabels(labels)
+    kind = XCAFDimTolObjects_GeomToleranceType.XCAFDimTolObjects_GeomToleranceType_Position
+    all_ = [labels.Value(k + 1) for k in range(labels.Length())]
+    (label,) = [one for one in all_ if XCAFDoc_GeomTolerance.Set_s(one).GetObject().GetType() == kind]
+    assert XCAFDoc_GeomTolerance.Set_s(label).GetObject().GetValue() == 0.2
+    datums = Sequence_TDF_Label()
+    tool.GetDatumOfTolerLabels_s(label, datums)
+    assert datums.Length() == 1
+
+
+class Misplaced(JetpackBracket):
+    """The position of what is no face."""
+
+    def positions(self) -> dict[str, float]:
+        return {"lid": 0.2}
+
+
+def test_the_position_of_no_face_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(GeometryError, match="position of 'lid': the part has no flat face of that name"):
+        write_step(Misplaced(15, 42), tmp_path / "part.step")
