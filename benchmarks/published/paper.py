@@ -231,9 +231,9 @@ def front_section(data: ReportData, rows: Sequence[Row], evaluations: Mapping[tu
     return (
         f"{len(front)} best compromises; {len(data.dominating)} of them are better than the original in everything.\n\n"
         + table(("objective (rms)", "original", "lowest on the front", "change"), gains)
-        + f"\nThe {len(best)} best compromises of the published table, moved to our grid and evaluated here: "
-        f"{len(flown)} feasible, {dominated} of them dominated by our front; {ours} of our {len(front)} are dominated "
-        "by one of theirs.\n"
+        + f"\nThe {len(best)} best compromises of the published table, moved to the study's grid and evaluated here: "
+        f"{len(flown)} feasible, {dominated} of them dominated by the run's front; {ours} of its {len(front)} are "
+        "dominated by one of theirs.\n"
     )
 
 
@@ -256,7 +256,7 @@ def script_correlation(rows: Sequence[Row], evaluations: Mapping[tuple[int, ...]
         )
         for k, label in enumerate(("momentum", "joint velocity", "thrust"))
     ]
-    head = ("script objective", "median ratio, ours / published", "largest difference", "rank correlation")
+    head = ("script objective", "median ratio, codesign / published", "largest difference", "rank correlation")
     return table(head, lines)
 
 

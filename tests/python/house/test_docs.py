@@ -80,3 +80,9 @@ def test_pages_link_to_pages_only():
         if not (page.parent / target).resolve().is_relative_to(DOCS)
     }
     assert outside == set()
+
+
+@pytest.mark.parametrize("page", sorted(str(path.relative_to(DOCS)) for path in DOCS.rglob("*.md")))
+def test_pages_speak_of_codesign_not_of_us(page):
+    lines = (DOCS / page).read_text().splitlines()
+    assert [line for line in lines if re.search(r"\b([Oo]urs?|[Ww]e)\b", line)] == []
