@@ -94,9 +94,12 @@ def python_graph() -> dict[str, set[str]]:
 
 
 def room(file: str) -> str:
-    """Room of a C++ file; what lies at the root counts as the base."""
-    folder = file.rpartition("/")[0]
-    return f"cpp/{folder}" if folder else BASE
+    """Room of a C++ file: of the folder above, if its own has no place; what lies at the root counts as the base."""
+    folder = f"cpp/{file}".rpartition("/")[0]
+    if folder == "cpp":
+        return BASE
+    above = folder.rpartition("/")[0]
+    return folder if folder in PLACES or above == "cpp" else room(f"{above.removeprefix('cpp/')}/")
 
 
 def cpp_graph() -> dict[str, set[str]]:

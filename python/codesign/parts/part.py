@@ -185,7 +185,7 @@ class MirroredPart(Part):
         return self.original.fits()
 
     def positions(self) -> dict[str, float]:
-        """Those of the original."""
+        """Of the original: face -> tolerance [mm]."""
         return self.original.positions()
 
     def solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
