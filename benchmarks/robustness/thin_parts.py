@@ -10,7 +10,13 @@ from generated_parts import Draft, GeneratedPart, box, cavity, cross_hole, cup, 
 
 WALLS = (0.6, 1.0, 1.5, 2.0, 3.0)
 WEDGE_ANGLES = (20.0, 10.0, 5.0, 3.0, 2.0)  # degrees
-ROUND = ("cup", "cross_hole")  # features whose volume depends on how chords are cut
+ROUND = (
+    "cup",
+    "cross_hole",
+    "through_holes",
+    "boss",
+    "fillet_pocket",
+)  # features whose volume depends on how chords are cut
 
 
 def tray(draft: Draft) -> None:
