@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "errors.hpp"
-#include "fem/mesh/boundary_neighbors.hpp"
 #include "fem/meshing/surface_match.hpp"
 #include "fem/meshing/wall_size.hpp"
 
@@ -49,15 +48,13 @@ TopologyKeeper::TopologyKeeper(const PreparedSurface& prepared, const SizeField&
     : prepared_(prepared), size_(size), options_(options) {}
 
 bool TopologyKeeper::accepts(const TetMesh& mesh) {
-  const Triangles boundary = boundary_triangles(mesh);
-  const Topology found = measure_topology(boundary);
+  const Topology found = measure_topology(boundary_triangles(mesh));
   if (found == prepared_.topology) return true;
-  const Topology closed = measure_topology(boundary, boundary_neighbors(mesh));
   std::vector<Mismatch> mismatches = find_mismatches(mesh, prepared_.surface, prepared_.oracle);
   const double resolved = std::min(kResolved, kOfExtent * extent(prepared_.surface.points));
   const auto large = std::count_if(mismatches.begin(), mismatches.end(),
                                    [&](const Mismatch& m) { return m.size > resolved; });
-  if (large == 0 && closed.euler == prepared_.topology.euler) {
+  if (large == 0 && found.euler.size() == prepared_.topology.euler.size()) {
     small_ = static_cast<int>(mismatches.size());
     return true;
   }

@@ -16,10 +16,9 @@ namespace codesign::fem {
 
 // Compares the boundary of a mesh with the surface: as many closed pieces, each of the same Euler
 // characteristic, manifold. Where they differ it asks for another mesh, made with more care and
-// with smaller elements there, a few times. Places where the boundary only touches itself, no
-// larger than what surfaces are simplified by (0.05 mm, 0.0005 of the extent), are counted instead
-// if the boundary, followed along the material there, has the Euler characteristics of the surface:
-// they sit on ledges of that size, which elements cannot follow at any edge length.
+// with smaller elements there, a few times. Faults no larger than what surfaces are simplified by
+// (0.05 mm, 0.0005 of the extent) are only counted: they sit on ledges of that size, which elements
+// cannot follow at any edge length.
 class TopologyKeeper {
  public:
   // `prepared` must outlive the keeper.

@@ -62,10 +62,7 @@ std::size_t count_points(const Triangles& triangles) {
 }  // namespace
 
 Topology measure_topology(const Triangles& triangles) {
-  return measure_topology(triangles, triangle_neighbors(triangles));
-}
-
-Topology measure_topology(const Triangles& triangles, const Neighbors& neighbors) {
+  const Neighbors neighbors = triangle_neighbors(triangles);
   Fans fans = join_corners(triangles, neighbors);
   Sets pieces = join_triangles(neighbors);
   std::unordered_map<std::size_t, std::size_t> piece_of;  // root triangle -> piece

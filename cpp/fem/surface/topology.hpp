@@ -17,9 +17,6 @@ struct Topology {
 };
 Topology measure_topology(const Triangles& triangles);
 
-// The same where it is known which triangles belong together at edges with more than two.
-Topology measure_topology(const Triangles& triangles, const Neighbors& neighbors);
-
 // The points and edges that are not manifold: one point index each, an end for edges.
 std::vector<int> non_manifold_points(const Triangles& triangles);
 

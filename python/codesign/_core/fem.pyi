@@ -300,7 +300,7 @@ class MeshReport:
     @property
     def genus(self) -> list[int]:
         """
-        of each closed piece of the surface, and of the boundary
+        of each closed piece of the surface, and of the boundary but for small faults
         """
     @property
     def peeled(self) -> int:
@@ -320,7 +320,7 @@ class MeshReport:
     @property
     def small_faults(self) -> int:
         """
-        places of at most 0.05 mm and 0.0005 of the extent where the boundary touches itself
+        places where the boundary tears on ledges of at most 0.05 mm and 0.0005 of the extent, which no element follows
         """
     @property
     def surface_distance(self) -> float | None:

@@ -201,6 +201,11 @@ def _warnings(solved: Solved) -> list[str]:
         found.append(
             f"clamps and loads are made of whole sides of elements, as their borders gave no mesh: {solved.ragged}"
         )
+    if faults := solved.mesh.report.small_faults:
+        found.append(
+            f"the mesh tears or touches itself at {faults} places of at most 0.05 mm, on ledges that no element follows: "
+            "its topology may be another than that of the surface there"
+        )
     if not result.peak_resolved:
         found.append(
             f"the peak stress is not resolved: its estimated error is {result.stress_error / result.peak_stress:.0%} "
