@@ -203,8 +203,8 @@ def _warnings(solved: Solved) -> list[str]:
         )
     if faults := solved.mesh.report.small_faults:
         found.append(
-            f"the mesh tears or touches itself at {faults} places of at most 0.05 mm, on ledges that no element follows: "
-            "its topology may be another than that of the surface there"
+            f"the mesh tears or touches itself at {faults} places of at most 0.05 mm, on ledges that no element "
+            "follows: its topology may be another than that of the surface there"
         )
     if not result.peak_resolved:
         found.append(
