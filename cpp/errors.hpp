@@ -9,6 +9,7 @@
 // iteration limit) is a status in the result.
 namespace codesign {
 
+// Base of all.
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -20,6 +20,7 @@ enum class QpStatus {
 // A point counts as solved up to this KKT residual (see BoxQpResult); round-off leaves 1e-15.
 inline constexpr double kQpTolerance = 1e-9;
 
+// A solution, or how far the solver came.
 struct BoxQpResult {
   QpStatus status = QpStatus::kBadData;
   int iterations = 0;  // changes of the working set plus one: the number of Cholesky factorizations

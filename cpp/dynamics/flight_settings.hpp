@@ -47,6 +47,7 @@ struct ReferenceSettings {
   double angular_velocity_time = 0.0;  // of the filter of its angular velocity [s]
 };
 
+// Gains of the momentum, attitude, posture and torque loops.
 struct Gains {
   double momentum_proportional = 0.0;  // K_P [1/s²]
   double momentum_derivative = 0.0;    // K_D [1/s]
@@ -61,16 +62,17 @@ struct Gains {
 
 // Weights of the momentum QP and of the torque QP.
 struct Weights {
-  double momentum = 0.0;
-  double constant_inertia = 0.0;
-  double posture = 0.0;
-  double joint_velocity = 0.0;
-  double thrust_rate = 0.0;
-  double thrust_symmetry = 0.0;
-  double regularization = 0.0;
-  double torque = 0.0;
+  double momentum = 0.0;          // of the momentum's error
+  double constant_inertia = 0.0;  // of the task that keeps the inertia constant
+  double posture = 0.0;           // of the distance from the initial posture
+  double joint_velocity = 0.0;    // of joint velocities
+  double thrust_rate = 0.0;       // of thrust rates
+  double thrust_symmetry = 0.0;   // of differences within symmetry_pairs
+  double regularization = 0.0;    // of everything, so that the solution is unique
+  double torque = 0.0;            // of torques, in the torque QP
 };
 
+// Ranges and steepnesses of the limits that the controllers keep.
 struct Limits {
   Eigen::VectorXd joint_lower, joint_upper;  // (joints) [rad], before scaling; empty: the model's
   Eigen::VectorXd joint_range_scale;         // (joints) factor on both
@@ -146,11 +148,13 @@ struct Disturbances {
   std::uint64_t seed = 0;
 };
 
+// What flies the robot.
 enum class Controller {
   kMomentumQp,  // momentum and torque QPs, torque-driven joints
   kPredictive,  // multi-rate predictive control, joints with position servos
 };
 
+// Everything that decides a flight besides the robot.
 struct FlightSettings {
   Controller controller = Controller::kMomentumQp;
   double step = 0.0;       // of the momentum loop, jets and samples [s]

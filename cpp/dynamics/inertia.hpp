@@ -9,6 +9,7 @@
 // bodies (composite rigid bodies).
 namespace codesign::dynamics {
 
+// Room for the inertias of one model's bodies.
 struct InertiaData {
   explicit InertiaData(const Model& model);
   std::vector<RigidInertia> bodies;    // world axes, center of mass from the base origin

@@ -17,6 +17,7 @@ struct Turbine {
   double rate_gain = 50.0;      // of the feedback linearization that follows a thrust rate [1/s]
 };
 
+// State of a jet whose thrust has dynamics of second order.
 struct ThrustState {
   double thrust = 0.0;       // [N]
   double thrust_rate = 0.0;  // [N/s]

@@ -11,6 +11,7 @@
 // No function here allocates, apart from the constructors of the scratch structs.
 namespace codesign::dynamics {
 
+// Place of a moving body.
 struct BodyPose {
   Eigen::Matrix3d R;       // world_R_body
   Eigen::Vector3d p;       // body origin from the base origin [m], world axes
@@ -18,6 +19,7 @@ struct BodyPose {
   Eigen::Vector3d axis() const { return R.col(2); }  // of the joint, world axes
 };
 
+// Room for the places of one model's bodies.
 struct KinematicsData {
   explicit KinematicsData(const Model& model);
   Eigen::Vector3d base_position;  // base origin in the world [m]
@@ -31,6 +33,7 @@ struct BodyVelocity {
   Eigen::Vector3d linear_acceleration, angular_acceleration;  // [m/s²], [rad/s²]
 };
 
+// Room for the velocities of one model's bodies.
 struct VelocityData {
   explicit VelocityData(const Model& model);
   std::vector<BodyVelocity> bodies;

@@ -23,6 +23,7 @@ inline constexpr int kBaseDofs = 6;
 inline constexpr double kGravity = 9.81;  // [m/s²], along -z of the world
 inline constexpr int kNone = -1;
 
+// How a joint moves.
 enum class JointType { kRevolute, kPrismatic };
 
 // A joint that moves; position 0 is the URDF's zero. Limits are stored for information only.
@@ -57,6 +58,7 @@ struct Frame {
   Pose body_T_frame;
 };
 
+// A robot as the algorithms see it: a tree of moving bodies, SI units.
 struct Model {
   std::string name;
   bool fixed_base = false;

@@ -33,6 +33,7 @@ struct ControllerOrigin {
   Eigen::VectorXd posture;               // s₀ (joints)
 };
 
+// The origin at a state; posture as the settings give it, else that of the state.
 ControllerOrigin controller_origin(const FlightSettings& settings, const RobotState& state,
                                    const RobotTerms& terms);
 
@@ -62,6 +63,7 @@ struct MomentumQp {
   Eigen::VectorXd g, lower, upper;
 };
 
+// Writes the QP above, with the bounds that joint ranges and thrust ranges leave to u.
 void build_momentum_qp(const FlightSettings& settings, const ControllerOrigin& origin,
                        const MomentumTask& task, const RobotState& state,
                        const Eigen::Ref<const Eigen::VectorXd>& thrusts, MomentumQp& qp);

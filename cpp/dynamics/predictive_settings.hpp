@@ -36,6 +36,7 @@ struct PredictiveModelOptions {
   bool varying = true;           // false: the linearization of the first solve is kept
 };
 
+// Multi-rate predictive control: joints every period, throttles every few.
 struct PredictiveSettings {
   double period = 0.005;            // of solves and joint set points [s]
   int throttle_every = 20;          // solves
@@ -65,6 +66,7 @@ enum class ServoIntegrator {
   kRungeKutta4,  // classical fourth order, robot and jets together
 };
 
+// A robot with position servos, and how it is advanced.
 struct ServoPlantSettings {
   ServoSettings servo;
   ServoIntegrator integrator = ServoIntegrator::kImplicit;

@@ -49,6 +49,7 @@ struct RobotTerms {
   std::vector<MountedActuator> jets;
 };
 
+// Writes all terms of a state.
 void update_terms(const Model& model, const RobotState& state, RobotTerms& terms);
 
 // All but momentum and its matrix: what the equations of motion need.

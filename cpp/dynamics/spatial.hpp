@@ -35,11 +35,13 @@ Eigen::Vector3d angle_difference(const Eigen::Vector3d& a, const Eigen::Vector3d
 // Largest entry of |RᵀR - 1|, or 2 if R is a reflection: how far R is from a rotation.
 double rotation_error(const Eigen::Matrix3d& R);
 
+// Pose a_T_b: rotation a_R_b and the origin of b in a.
 struct Pose {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  // [m]
 };
 
+// a_T_c, and b_T_a of a_T_b.
 Pose operator*(const Pose& a_T_b, const Pose& b_T_c);
 Pose inverse(const Pose& a_T_b);
 

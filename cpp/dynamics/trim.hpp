@@ -12,10 +12,12 @@
 // and nothing turns. Of all such states the one nearest to a wanted one.
 namespace codesign::dynamics {
 
+// Between which angles joints may be.
 struct JointRanges {
   Eigen::VectorXd lower, upper;  // (joints of the model) [rad, m]
 };
 
+// Which hover is sought.
 struct TrimSettings {
   std::vector<std::string> joints;  // that may move; the others keep their angles
   // What is least at the trim: Σ (Δs / 1 rad)² + (tilt_weight · tilt)² + Σ (thrust_weight (T −
@@ -27,6 +29,7 @@ struct TrimSettings {
   int iterations = 200;          // at most
 };
 
+// A hover, or the nearest state to one that was found.
 struct Trim {
   Pose base;                // the wanted one, tilted about its origin
   Eigen::VectorXd joints;   // (joints) inside their ranges

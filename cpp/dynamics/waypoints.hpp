@@ -7,11 +7,13 @@
 // A path through way-points: position and yaw relative to the start, as smooth functions of time.
 namespace codesign::dynamics {
 
+// How a path goes through its points.
 enum class WaypointKind {
   kStop,     // at rest in every way-point: minimum-jerk legs
   kThrough,  // least integral of the squared jerk through all way-points, at rest at both ends
 };
 
+// A point of a path.
 struct Waypoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // from the start, world axes [m]
   double yaw = 0.0;                                    // from the start's [rad]
@@ -19,6 +21,7 @@ struct Waypoint {
   double rest = 0.0;                                   // there [s]; splits a `through` path
 };
 
+// A path as it is asked for.
 struct WaypointPath {
   double start = 0.0;  // time at the start position [s]
   std::vector<Waypoint> waypoints;
@@ -27,10 +30,10 @@ struct WaypointPath {
 
 // Position (x, y, z) and yaw with three derivatives.
 struct PathPoint {
-  Eigen::Vector4d value = Eigen::Vector4d::Zero();
-  Eigen::Vector4d velocity = Eigen::Vector4d::Zero();
-  Eigen::Vector4d acceleration = Eigen::Vector4d::Zero();
-  Eigen::Vector4d jerk = Eigen::Vector4d::Zero();
+  Eigen::Vector4d value = Eigen::Vector4d::Zero();         // [m, rad]
+  Eigen::Vector4d velocity = Eigen::Vector4d::Zero();      // [m/s, rad/s]
+  Eigen::Vector4d acceleration = Eigen::Vector4d::Zero();  // [m/s², rad/s²]
+  Eigen::Vector4d jerk = Eigen::Vector4d::Zero();          // [m/s³, rad/s³]
 };
 
 // The path as polynomials of degree five. After its end it holds.

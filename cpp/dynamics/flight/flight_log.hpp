@@ -12,8 +12,10 @@ namespace codesign::dynamics {
 using History = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using IntHistory = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// Whether a flight reached its end.
 enum class FlightStatus { kCompleted, kFailed };
 
+// Why a flight was lost.
 enum class FailureReason {
   kNotFailed,
   kNoHover,        // no trimmed state to start from

@@ -6,6 +6,7 @@
 // How a flight begins.
 namespace codesign::dynamics {
 
+// The state that a flight begins in.
 struct FlightStart {
   RobotState state;
   Eigen::VectorXd thrusts;  // (jets) [N]

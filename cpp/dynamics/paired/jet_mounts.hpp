@@ -16,6 +16,7 @@ struct JetMount {
   double reaction = 0.0;
 };
 
+// The actuators on the bodies that hold their frames.
 std::vector<JetMount> mount_jets(const Model& model, const std::vector<Actuator>& actuators);
 
 // Pushes the bodies with thrusts (jets,) [N].

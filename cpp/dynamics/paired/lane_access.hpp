@@ -9,14 +9,17 @@
 // One lane of what lanes.hpp has two of.
 namespace codesign::dynamics {
 
+// Writes the vector of one lane.
 inline void set_lane(LaneVector& v, int lane, const Eigen::Vector3d& value) {
   v.x[lane] = value.x(), v.y[lane] = value.y(), v.z[lane] = value.z();
 }
 
+// The vector of one lane.
 inline Eigen::Vector3d of_lane(const LaneVector& v, int lane) {
   return {v.x[lane], v.y[lane], v.z[lane]};
 }
 
+// The whole matrix of one lane.
 inline Eigen::Matrix3d of_lane(const LaneSymmetric& m, int lane) {
   Eigen::Matrix3d full;
   full << of_lane(m.column_x(), lane), of_lane(m.column_y(), lane), of_lane(m.column_z(), lane);
@@ -27,6 +30,7 @@ inline Eigen::Matrix3d of_lane(const LaneSymmetric& m, int lane) {
 template <class T>
 constexpr std::size_t kLaneCount = sizeof(T) / sizeof(Lanes);
 
+// Number `index` of one lane, of a struct made of Lanes.
 inline double read_lane(const void* from, std::size_t index, int lane) {
   double value;
   std::memcpy(&value,
@@ -36,6 +40,7 @@ inline double read_lane(const void* from, std::size_t index, int lane) {
   return value;
 }
 
+// Writes such a number.
 inline void write_lane(void* to, std::size_t index, int lane, double value) {
   std::memcpy(static_cast<char*>(to) + index * sizeof(Lanes) +
                   static_cast<std::size_t>(lane) * sizeof(double),

@@ -9,12 +9,15 @@ namespace codesign::dynamics {
 
 using Lanes = double __attribute__((vector_size(16)));
 
+// A number for each of both.
 inline Lanes lanes(double first, double second) { return Lanes{first, second}; }
 
+// A vector for each.
 struct LaneVector {
   Lanes x, y, z;
 };
 
+// Arithmetic of both at once.
 inline LaneVector operator+(const LaneVector& a, const LaneVector& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -41,6 +44,7 @@ inline LaneVector combine(const LaneMatrix& columns, const LaneVector& v) {
   return v.x * columns.a + v.y * columns.b + v.z * columns.c;
 }
 
+// A symmetric matrix for each.
 struct LaneSymmetric {
   Lanes xx, xy, xz, yy, yz, zz;
   LaneVector column_x() const { return {xx, xy, xz}; }
@@ -48,6 +52,7 @@ struct LaneSymmetric {
   LaneVector column_z() const { return {xz, yz, zz}; }
 };
 
+// Matrix times vector, for both.
 inline LaneVector operator*(const LaneSymmetric& m, const LaneVector& v) {
   return {dot(m.column_x(), v), dot(m.column_y(), v), dot(m.column_z(), v)};
 }

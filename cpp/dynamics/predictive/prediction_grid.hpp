@@ -24,6 +24,7 @@ struct PredictionGrid {
   int unknowns = 0;
 };
 
+// The grid of settings, for so many joints that move and so many jets.
 PredictionGrid make_prediction_grid(const PredictiveSettings& settings, int joints, int jets);
 
 }  // namespace codesign::dynamics

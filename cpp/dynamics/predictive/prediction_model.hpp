@@ -35,6 +35,7 @@ struct JetPrediction {
   double thrust = 0.0, thrust_rate = 0.0, variable = 0.0;
 };
 
+// The jet about a state [N, N/s] and a throttle variable v.
 JetPrediction linearize_jet(const StandardizedTurbine& turbine, const ThrustState& state, double v);
 
 // ċ = world_R_body l / mass

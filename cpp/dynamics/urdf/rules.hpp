@@ -61,16 +61,21 @@ inline constexpr std::array kNumbers = {
 inline constexpr std::array<std::string_view, 6> kJointTypes = {
     "fixed", "revolute", "continuous", "prismatic", "floating", "planar"};
 
+// Whether a list holds a name.
 inline bool one_of(std::string_view name, Names names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+// Whether joints of a type need a range.
 inline bool needs_limits(std::string_view type) { return one_of(type, {"revolute", "prismatic"}); }
 
+// Whether joints of a type move along or about an axis.
 inline bool has_axis(std::string_view type) { return needs_limits(type) || type == "continuous"; }
 
+// Whether an element of a link is a shape of it.
 inline bool is_shape(std::string_view element) { return one_of(element, {"visual", "collision"}); }
 
+// Whether an element below another is read; the rest is ignored.
 inline bool is_read(std::string_view parent, std::string_view element, UrdfScope scope) {
   if (parent == "robot") return one_of(element, {"link", "joint"});
   if (parent == "link") {

@@ -10,6 +10,7 @@
 
 namespace codesign::dynamics {
 
+// What of a URDF becomes the model.
 struct UrdfOptions {
   // Names of the joints that move, in the wanted order; all others are locked at position 0 and
   // their links lumped. Absent: every joint that is not fixed, in the order of the URDF text.

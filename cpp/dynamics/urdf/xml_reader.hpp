@@ -5,6 +5,7 @@
 
 namespace codesign::dynamics {
 
+// An attribute of an element, as views of the text.
 struct XmlAttribute {
   std::string_view name, value;
 };

@@ -6,6 +6,7 @@
 
 namespace codesign::fem {
 
+// What a smooth face is a piece of; its name for people.
 enum class SurfaceType { plane, cylinder, cone, sphere, free };
 std::string surface_type_name(SurfaceType type);
 

@@ -7,6 +7,7 @@ namespace codesign::fem {
 
 inline constexpr double kMemoryLimit = 4e9;  // bytes, for the matrices and factors of one analysis
 
+// Bytes of the matrices of a pattern.
 double matrix_bytes(const NodePattern& pattern);  // of the stiffness
 double factor_bytes(const NodePattern& pattern);  // of its Cholesky factor
 

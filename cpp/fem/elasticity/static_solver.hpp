@@ -28,6 +28,7 @@ namespace codesign::fem {
 // takes longer than conjugate gradients for all load cases; both are known before it is computed.
 enum class LinearSolver { automatic, direct, iterative };
 
+// How a model is solved and where its stress is read.
 struct StaticSettings {
   ExclusionRule exclusion = ExclusionRule::local;
   std::optional<double> exclusion_distance;  // m, see ExclusionSettings
@@ -39,6 +40,7 @@ struct StaticSettings {
   int solutions = 1;                   // load cases that will be solved, for the automatic choice
 };
 
+// A part with its supports and loads.
 struct StaticModel {
   TetMesh mesh;
   Material material;
@@ -54,6 +56,7 @@ struct LeftOut {
   double border_distance = 0.0;  // m, from the nearest border of a clamp or load
 };
 
+// What a load case does to a part.
 struct StaticResult {
   Points displacement;            // (n, 3) m
   Stresses stress;                // (n, 6) Pa, recovered at the nodes
@@ -124,6 +127,7 @@ class StaticSystem {
   std::unique_ptr<Data> data_;
 };
 
+// One load case of a model; throws as StaticSystem does.
 StaticResult solve_static(const StaticModel& model);
 
 }  // namespace codesign::fem

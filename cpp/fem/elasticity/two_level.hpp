@@ -36,6 +36,7 @@ class TwoLevelPreconditioner {
   CholeskyFactor coarse_;
 };
 
+// A solution and what it took.
 struct ConjugateGradientResult {
   Eigen::VectorXd solution;
   int iterations = 0;

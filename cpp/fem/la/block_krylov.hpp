@@ -13,6 +13,7 @@ using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd& x)>;
 using SelfAdjoint =
     std::function<Eigen::MatrixXd(const Eigen::MatrixXd& v, const Eigen::MatrixXd& mv)>;
 
+// Which eigenvalues are sought, how exactly.
 struct WantedEigenvalues {
   Eigen::Index largest = 1;   // how many of the greatest
   Eigen::Index smallest = 0;  // how many of the least

@@ -24,6 +24,7 @@ struct NodePattern {
   int equations() const { return dof_start.back(); }
 };
 
+// How the fill of the factor is kept small.
 enum class VertexOrdering { automatic, minimum_degree, nested_dissection };
 
 // Fill-reducing order: only corner vertices are ordered (minimum degree, or nested dissection for

@@ -15,6 +15,7 @@ struct Supernodes {
   int count() const { return static_cast<int>(start.size()) - 1; }
 };
 
+// An order of elimination and the supernodes it has.
 struct Elimination {
   std::vector<int> order;  // order[k] = old index eliminated k-th
   Supernodes supernodes;   // in the new order

@@ -20,6 +20,7 @@ void check_material(const Material& material);
 // Stress and strain as vectors xx yy zz xy yz zx; shear strains are engineering ones (gamma).
 using Voigt = Eigen::Matrix<double, 6, 1>;
 
+// Elastic constants.
 double lame_lambda(const Material& material);    // Pa
 double shear_modulus(const Material& material);  // Pa
 
@@ -29,6 +30,7 @@ Voigt stress_of_strain(double lambda, double mu, const Voigt& strain);
 // Stress of a displacement gradient, entry (i, j) = d u_i / d x_j, Pa.
 Voigt stress_of_gradient(double lambda, double mu, const Eigen::Matrix3d& gradient);
 
+// Von Mises stress of a stress, Pa.
 double von_mises(const Voigt& stress);
 
 }  // namespace codesign::fem

@@ -20,13 +20,16 @@ using TetNodes = Eigen::Matrix<double, 3, kTetNodes>;      // column: a node's p
 using TetValues = Eigen::Matrix<double, kTetNodes, 1>;     // shape functions at a point
 using TetGradients = Eigen::Matrix<double, 3, kTetNodes>;  // column: a shape function's gradient
 
+// Shape functions and their gradients at a reference point of the element.
 TetValues tet10_values(const Eigen::Vector3d& xi);
 TetGradients tet10_reference_gradients(const Eigen::Vector3d& xi);  // with respect to xi
 
 using FaceNodes = Eigen::Matrix<double, 3, 6>;
+// Shape functions and their gradients at a reference point of a face.
 Eigen::Matrix<double, 6, 1> tri6_values(const Eigen::Vector2d& xi);
 Eigen::Matrix<double, 2, 6> tri6_reference_gradients(const Eigen::Vector2d& xi);
 
+// Positions of the nodes of an element [m].
 TetNodes tet_nodes(const TetMesh& mesh, int tet);
 // Those of a nodal field (3 n).
 TetNodes tet_displacements(const TetMesh& mesh, int tet, const Eigen::VectorXd& displacement);

@@ -6,6 +6,7 @@ namespace codesign::fem {
 
 inline constexpr double kDegree = 3.14159265358979323846 / 180.0;  // rad
 
+// What a mesh shall be like, and when meshing gives up.
 struct MeshOptions {
   double feature_angle = 40.0 * kDegree;   // edges sharper than this are kept, rad
   double simplify = 5e-5;                  // points may move this far to get rid of tiny edges, m

@@ -16,6 +16,7 @@ struct EdgeArc {
   Eigen::Vector3d at(double x) const;      // 0 <= x <= 1 from the first end, m
 };
 
+// The curves of all edges of a surface.
 struct EdgeArcs {
   std::vector<EdgeArc> arcs;
   std::vector<std::array<int, 3>> of_triangle;  // (m) arc of the edge from corner k

@@ -6,6 +6,7 @@
 
 namespace codesign::fem {
 
+// What was done to a surface.
 struct SmoothReport {
   int facets = 0;              // triangles replaced by curved ones
   double max_distance = 0.0;   // of a new point from its place on the triangle replaced, m
@@ -14,6 +15,7 @@ struct SmoothReport {
   std::string reason;          // why nothing was curved at all; empty otherwise
 };
 
+// A smoothed surface.
 struct SmoothSurface {
   SurfaceMesh surface;
   SmoothReport report;

@@ -20,6 +20,7 @@ namespace codesign::fem {
 // of loaded faces of any kind; the rule of the published study.
 enum class ExclusionRule { local, published };
 
+// A rule, and the distance that it keeps.
 struct ExclusionSettings {
   ExclusionRule rule = ExclusionRule::local;
   std::optional<double> distance;  // m, the same everywhere; the rule's own if absent
@@ -32,6 +33,7 @@ struct HeldAndLoaded {
   std::vector<int> loaded;
 };
 
+// The places of one model that a rule leaves out.
 class ExclusionZone {
  public:
   static constexpr double kPublishedDistance = 3e-3;  // m

@@ -12,6 +12,7 @@ namespace codesign::fem {
 // A row per instant, a column per unit load: how much of it acts then.
 using LoadHistory = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// The largest stress of a history, where and when.
 struct HistoryPeak {
   PeakStress peak;
   Eigen::Index instant = -1;  // row of the history

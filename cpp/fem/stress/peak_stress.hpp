@@ -11,6 +11,7 @@
 
 namespace codesign::fem {
 
+// A largest von Mises stress and its place [m].
 struct PeakStress {
   double value = 0.0;  // Pa
   Eigen::Vector3d position = Eigen::Vector3d::Zero();

@@ -20,6 +20,7 @@ struct PointStresses {
 PointStresses point_stresses(const TetMesh& mesh, const Material& material,
                              const Eigen::VectorXd& displacement);
 
+// (n) von Mises stress of every row, Pa.
 Eigen::VectorXd von_mises(const Stresses& stress);
 
 // The von Mises stress exceeded in the given volume (m³); the smallest one if there is less

@@ -33,6 +33,7 @@ std::pair<std::vector<int>, int> connected_groups(const Neighbors& neighbors, Jo
   return {group, groups};
 }
 
+// The same where all neighbors are joined.
 template <class Neighbors>
 std::pair<std::vector<int>, int> connected_groups(const Neighbors& neighbors) {
   return connected_groups(neighbors, [](std::size_t, std::size_t) { return true; });

@@ -6,6 +6,7 @@
 
 namespace codesign::fem {
 
+// Mass properties of a solid.
 struct MassProperties {
   double volume;            // m³
   double mass;              // kg

@@ -4,6 +4,7 @@
 
 namespace codesign::fem {
 
+// What a simplification did.
 struct SimplifyReport {
   int collapsed = 0;      // edges
   double distance = 0.0;  // the farthest that any point moved, m
