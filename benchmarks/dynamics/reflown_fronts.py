@@ -91,10 +91,10 @@ def draw(file: Path, names: list[str], tables: list[np.ndarray], how: str) -> No
         axes = figure.subplots()
         for name, table, tint, mark in zip(names, tables, style.SERIES, "o^sv", strict=False):
             axes.scatter(
-                *table[1:, 0].T, 26, "none", mark, edgecolors=tint, linewidths=0.8, label=f"{name}, as searched"
+                *table[1:, 0].T, 26, "none", marker=mark, edgecolors=tint, linewidths=0.8, label=f"{name}, as searched"
             )
-            axes.scatter(*table[1:, 1].T, 10, tint, mark, linewidths=0, label=f"{name}, {how.replace('_', ' ')}")
-        axes.scatter(*tables[0][0, 1], 34, style.ORIGINAL, "D", edgecolors="white", label="original")
+            axes.scatter(*table[1:, 1].T, 10, tint, marker=mark, linewidths=0, label=f"{name}, {how.replace('_', ' ')}")
+        axes.scatter(*tables[0][0, 1], 34, style.ORIGINAL, marker="D", edgecolors="white", label="original")
         axes.set(xlabel="Position error (m)", ylabel="Fuel (kg)")
         figure.legend(loc="outside lower center", ncols=2)
         figure.savefig(file)

@@ -69,12 +69,12 @@ def draw_projection(axes: Any, run: ReportData, x: int, y: int, color: int | Non
     for k, other in enumerate(run.compared):
         tint = style.COMPARED[k % len(style.COMPARED)]
         axes.scatter(
-            other.values[:, x], other.values[:, y], 16, tint, "^", edgecolors="white", linewidths=0.3,
+            other.values[:, x], other.values[:, y], 16, tint, marker="^", edgecolors="white", linewidths=0.3,
             label=f"best compromise of {other.name}", zorder=3,
         )  # fmt: skip
     if run.baseline_vector is not None:
         axes.scatter(
-            *run.baseline_vector[[x, y]], 34, style.ORIGINAL, "D", edgecolors="white", label="original", zorder=4
+            *run.baseline_vector[[x, y]], 34, style.ORIGINAL, marker="D", edgecolors="white", label="original", zorder=4
         )
     if run.recommended is not None:
         axes.scatter(
