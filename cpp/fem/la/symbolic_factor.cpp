@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-// The fields filled below are CHOLMOD 3's (SuiteSparse 5); later versions changed types among them.
-static_assert(CHOLMOD_MAIN_VERSION == 3,
+// The fields filled below have the same names and types in CHOLMOD 3 to 5 (SuiteSparse 5 to 7).
+static_assert(CHOLMOD_MAIN_VERSION >= 3 && CHOLMOD_MAIN_VERSION <= 5,
               "compare cholmod_factor with symbolic_factor, or use cholmod_analyze_p instead");
 
 namespace codesign::fem {
