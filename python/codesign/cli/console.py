@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from codesign.parts.strength import Confirmation
     from codesign.problem.evaluation import Evaluation
     from codesign.report.tolerances import Tolerances
+    from codesign.storage.records import Record
     from codesign.storage.runs import Run
 
+UNLIMITED = 10_000  # columns of a terminal
 MOST_ROWS = 20  # of a front
 # What is printed holds paths and texts of users: square brackets and colons in them are no markup.
 out = Console(markup=False, emoji=False)
@@ -127,12 +129,12 @@ def print_run(run: Run, as_json: bool) -> int:
     from codesign.storage.runs import summarize
 
     summary = summarize(run)
-    front = [record.evaluation for record in run.front]
+    front = run.front
     if as_json:
         closest = None if front else least_infeasible(run.evaluations)
         print_json(
             summary
-            | {"front": [evaluation.to_dict() for evaluation in front]}
+            | {"front": [record.evaluation.to_dict() for record in front]}
             | ({} if front else {"least_infeasible": None if closest is None else closest.to_dict()})
         )
         return 0 if front else 1
@@ -146,17 +148,28 @@ def print_run(run: Run, as_json: bool) -> int:
     return 1
 
 
-def _print_front(front: Sequence[Evaluation]) -> None:
-    table = Table(title=f"Pareto front, {len(front)} designs", title_justify="left")
-    rows = sorted(front, key=lambda evaluation: list(evaluation.objectives.values()))
-    for name in (*rows[0].design, *rows[0].objectives, "safety_factor"):
-        table.add_column(name, justify="right")
-    for evaluation in rows[:MOST_ROWS]:
-        numbers = (*evaluation.objectives.values(), evaluation.constraints.get("safety_factor"))
-        table.add_row(*map(value_text, evaluation.design.values()), *(shown(number, 5) for number in numbers))
-    out.print(table)
+def _print_front(front: Sequence[Record]) -> None:
+    """The best compromises; without their variables where the terminal has no room for them."""
+    rows = sorted(front, key=lambda record: list(record.evaluation.objectives.values()))
+    table = _front_table(rows, list(rows[0].evaluation.design))
+    wanted = out.measure(table, options=out.options.update(width=UNLIMITED)).maximum
+    out.print(table if wanted <= out.width else _front_table(rows, []))
     if len(rows) > MOST_ROWS:
         out.print(f"… and {len(rows) - MOST_ROWS} more")
+
+
+def _front_table(rows: Sequence[Record], variables: Sequence[str]) -> Table:
+    """Number in the run, some of the variables, objectives, smallest safety factor of all parts."""
+    table = Table(title=f"Pareto front, {len(rows)} designs", title_justify="left")
+    for name in ("design", *variables, *rows[0].evaluation.objectives, "safety_factor"):
+        table.add_column(name, justify="right")
+    for record in rows[:MOST_ROWS]:
+        evaluation = record.evaluation
+        factors = [part["safety_factor"] for part in evaluation.parts.values() if part.get("safety_factor") is not None]
+        numbers = (*evaluation.objectives.values(), min(factors, default=None))
+        values = (value_text(evaluation.design[name]) for name in variables)
+        table.add_row(str(record.number), *values, *(shown(number, 5) for number in numbers))
+    return table
 
 
 def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:

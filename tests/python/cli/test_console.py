@@ -3,10 +3,12 @@
 import json
 
 import pytest
+from rich.console import Console
 
 from codesign.cli import console
 from codesign.problem.evaluation import Evaluation
 from codesign.search.optimization import evaluate_designs
+from codesign.storage.records import Record
 from codesign.storage.runs import Run
 from fake_study import study
 
@@ -48,3 +50,17 @@ def test_a_run_whose_designs_all_failed_says_why(run, monkeypatch, capsys):
     assert "all 3 designs failed, 2 of them: MeshError: no mesh" in capsys.readouterr().out
     assert console.print_run(run, as_json=True) == 1
     assert json.loads(capsys.readouterr().out)["least_infeasible"] is None
+
+
+def test_the_table_of_a_front_fits_the_terminal(run, monkeypatch, capsys):
+    designs = {"weak": 3.0, "strong": 7.0}
+    parts = {name: {"safety_factor": factor} for name, factor in designs.items()}
+    many = {f"a_long_name_{k}": 10.0 * k for k in range(12)}
+    found = Record(17, 0, (0,), "", Evaluation(many, "feasible", None, {"mass": 1.5}, parts=parts))
+    monkeypatch.setattr(Run, "front", property(lambda _: [found]))
+    for width, named in ((80, False), (400, True)):
+        monkeypatch.setattr(console, "out", Console(width=width, markup=False))
+        assert console.print_run(run, as_json=False) == 0
+        told = capsys.readouterr().out
+        assert ("a_long_name_11" in told, "…" in told) == (named, False)
+        assert [cell.strip() for cell in told.splitlines()[-2].strip("│").split("│")][-2:] == ["1.5", "3"]
