@@ -115,7 +115,7 @@ def complete_flight(raw: dict[str, Any]) -> None:
     raw |= {"extends": "", "without": []}
     raw["flight"] |= {
         "controller": "momentum_qp", "jet_model": "turbine", "duration_s": 0.08, "torque_step_s": 0.004,
-        "plant_step_s": 0.002,
+        "hold_inertia": True, "plant_step_s": 0.002,
         "integrator": "runge_kutta_4", "seeds": [1, 2],
         "drives": {"momentum_delay_s": 0.008, "torque_delay_s": 0.004, "torque_lag_s": 0.005, "slip_speed_rad_s": 0.02},
         "drag": {"frames": ["front_jet"], "areas_m2": [0.2], "positions_m": [[0.0, 0.0, 0.1]],
