@@ -15,6 +15,7 @@ import msgspec
 
 from codesign import __version__
 from codesign.cli.export_formats import DEFAULT, LOG, ROBOT, units_of
+from codesign.errors import LibraryError
 from codesign.parts.component import Component, distinct_parts
 from codesign.parts.part import MirroredPart, Part
 from codesign.problem.design_space import Design, value_text
@@ -86,8 +87,11 @@ class Order:
         return {name: {"value": value, "unit": units[name]} for name, value in self.design.items()}
 
     def captions(self) -> dict[str, Caption]:
-        """What the drawing of each part says beside its geometry."""
-        from codesign.parts.drawing import Caption  # loads OpenCASCADE
+        """What the drawing of each part says beside its geometry. Raises: LibraryError: no OpenCASCADE."""
+        try:
+            from codesign.parts.drawing import Caption
+        except ImportError as error:
+            raise LibraryError.of(error, "a drawing") from error
 
         units = self.values
         design = ", ".join(f"{name} = {value_text(value)} {units[name]['unit']}" for name, value in self.design.items())

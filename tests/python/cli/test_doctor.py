@@ -74,7 +74,7 @@ def test_what_fits_passes_and_optional_packages_may_be_missing(installed):
 def broken_opencascade(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if name.startswith("OCP")]:
         monkeypatch.delitem(sys.modules, name)
-    for name in ("codesign.parts.step", "codesign.geometry.brep"):
+    for name in ("codesign.parts.step", "codesign.parts.drawing", "codesign.geometry.brep"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.setattr(sys, "meta_path", [_NoOpenCascade(), *sys.meta_path])
 
@@ -101,7 +101,8 @@ def test_export_without_opencascade_is_a_typed_error(broken_opencascade, tmp_pat
     with pytest.raises(SystemExit) as end:
         main()
     assert end.value.code == 2
-    assert capsys.readouterr().err.startswith("LibraryError: STEP needs a library that cannot be loaded: libGL.so.1")
+    said = "LibraryError: a drawing needs a library that cannot be loaded: libGL.so.1"
+    assert capsys.readouterr().err.startswith(said)
 
 
 def test_version(monkeypatch, capsys):
