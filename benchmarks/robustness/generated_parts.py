@@ -150,7 +150,8 @@ def cavity(draft: Draft) -> None:
         draft.solid -= box(x0, y0, draft.wall, x1, y1, top)
 
 
-FEATURES: dict[str, Callable[[Draft], None]] = {
+Features = dict[str, Callable[[Draft], None]]
+FEATURES: Features = {
     f.__name__: f for f in (pocket, edge_pocket, fillet_pocket, rib, cup, boss, cross_hole, through_holes, lip, cavity)
 }
 
@@ -162,12 +163,20 @@ def generate(seed: int) -> GeneratedPart:
         length, width, height = rng.uniform(30.0, 60.0), rng.uniform(25.0, 40.0), rng.uniform(4.0, 10.0)
         wall = float(np.exp(rng.uniform(np.log(0.5), np.log(5.0))))
         wall = min(wall, 0.5 * height)
-        draft = Draft(rng, length, width, height, wall, box(0.0, 0.0, 0.0, length, width, height))
-        names = rng.choice(list(FEATURES), size=rng.integers(1, 4), replace=False)
-        for name in names:
-            FEATURES[name](draft)
-        if is_one_solid(draft.solid):
-            return GeneratedPart("+".join(names), wall, draft.solid)
+        part = featured_plate(rng, FEATURES, length, width, height, wall)
+        if is_one_solid(part.solid):
+            return part
+
+
+def featured_plate(
+    rng: np.random.Generator, features: Features, length: float, width: float, height: float, wall: float
+) -> GeneratedPart:
+    """A plate [mm] with one to three kinds of features; they may have cut it in pieces."""
+    draft = Draft(rng, length, width, height, wall, box(0.0, 0.0, 0.0, length, width, height))
+    names = rng.choice(list(features), size=rng.integers(1, 4), replace=False)
+    for name in names:
+        features[name](draft)
+    return GeneratedPart("+".join(names), wall, draft.solid)
 
 
 def is_one_solid(solid: Solid) -> bool:

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import manifold3d
 import numpy as np
-from generated_parts import Draft, GeneratedPart, box, cavity, cross_hole, cup, cylinder, is_one_solid, pocket, rib
+from generated_parts import (
+    Draft,
+    Features,
+    GeneratedPart,
+    box,
+    cavity,
+    cross_hole,
+    cup,
+    cylinder,
+    featured_plate,
+    is_one_solid,
+    pocket,
+    rib,
+)
 
 WALLS = (0.6, 1.0, 1.5, 2.0, 3.0)
 WEDGE_ANGLES = (20.0, 10.0, 5.0, 3.0, 2.0)  # degrees
@@ -25,7 +36,7 @@ def tray(draft: Draft) -> None:
     draft.solid -= box(rim, rim, draft.wall, draft.length - rim, draft.width - rim, draft.height + 1.0)
 
 
-FEATURES: dict[str, Callable[[Draft], None]] = {f.__name__: f for f in (tray, pocket, rib, cup, cavity, cross_hole)}
+FEATURES: Features = {f.__name__: f for f in (tray, pocket, rib, cup, cavity, cross_hole)}
 
 
 def thin_plate(seed: int) -> GeneratedPart:
@@ -34,12 +45,9 @@ def thin_plate(seed: int) -> GeneratedPart:
     while True:
         length, width, height = rng.uniform(30.0, 60.0), rng.uniform(25.0, 40.0), rng.uniform(6.5, 12.0)
         wall = float(np.exp(rng.uniform(np.log(0.6), np.log(3.0))))
-        draft = Draft(rng, length, width, height, wall, box(0.0, 0.0, 0.0, length, width, height))
-        names = rng.choice(list(FEATURES), size=rng.integers(1, 4), replace=False)
-        for name in names:
-            FEATURES[name](draft)
-        if is_one_solid(draft.solid):
-            return GeneratedPart("+".join(names), wall, draft.solid)
+        part = featured_plate(rng, FEATURES, length, width, height, wall)
+        if is_one_solid(part.solid):
+            return part
 
 
 def wedge(angle_deg: float) -> GeneratedPart:

@@ -1,11 +1,14 @@
 /** Weights of the objectives: the choice that an achievement scalarization prefers (Wierzbicki 1980). */
 const SLIGHTLY = 1e-4;  // share of the sum, which decides between designs whose largest loss is the same
 
+/** Lowest and highest value of each objective among the choices. */
+const spans = report.objectives.map((o, k) => {
+  const values = report.choices.map(i => designs[i].f[k]);
+  return [Math.min(...values), Math.max(...values)];
+});
+
 /** Objective `k` of a choice from 0, the lowest among the choices, to 1, the highest. */
-function loss(i, k) {
-  const values = report.choices.map(j => designs[j].f[k]), low = Math.min(...values), span = Math.max(...values) - low;
-  return span > 0 ? (designs[i].f[k] - low) / span : 0;
-}
+const loss = (i, k) => spans[k][1] > spans[k][0] ? (designs[i].f[k] - spans[k][0]) / (spans[k][1] - spans[k][0]) : 0;
 
 /** The choice whose largest weighted loss is least. weights: one for each objective, not all 0. */
 function preferred(weights) {
