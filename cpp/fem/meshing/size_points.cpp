@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 namespace codesign::fem {
@@ -23,43 +22,45 @@ SizePoints::SizePoints(std::vector<Eigen::Vector3d> points, std::vector<double> 
     : growth_(growth) {
   if (points.empty() || points.size() != sizes.size())
     throw std::invalid_argument("size points: one edge length for each point");
-  std::vector<int> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  build(order, 0, static_cast<int>(order.size()), points, sizes);
-  for (const int i : order) {
-    points_.push_back(points[index(i)]);
-    sizes_.push_back(sizes[index(i)]);
+  std::vector<Item> items;
+  items.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    items.push_back({points[i], sizes[i], static_cast<int>(i)});
+  build(items, 0, static_cast<int>(items.size()));
+  points_.reserve(items.size());
+  sizes_.reserve(items.size());
+  for (const Item& item : items) {
+    points_.push_back(item.point);
+    sizes_.push_back(item.size);
   }
 }
 
 // Splits at the median of the longest side of the box.
-void SizePoints::build(std::vector<int>& order, int first, int last,
-                       const std::vector<Eigen::Vector3d>& points,
-                       const std::vector<double>& sizes) {
+void SizePoints::build(std::vector<Item>& items, int first, int last) {
   const std::size_t at = nodes_.size();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Node node{Eigen::Vector3d::Constant(kInfinity), Eigen::Vector3d::Constant(-kInfinity), kInfinity,
             first, last - first};
   for (int i = first; i < last; ++i) {
-    const std::size_t p = index(order[index(i)]);
-    node.lower = node.lower.cwiseMin(points[p]);
-    node.upper = node.upper.cwiseMax(points[p]);
-    node.smallest = std::min(node.smallest, sizes[p]);
+    const Item& item = items[index(i)];
+    node.lower = node.lower.cwiseMin(item.point);
+    node.upper = node.upper.cwiseMax(item.point);
+    node.smallest = std::min(node.smallest, item.size);
   }
   nodes_.push_back(node);
   if (last - first <= kLeafSize) return;
   int axis;
   (node.upper - node.lower).maxCoeff(&axis);
   const int middle = (first + last) / 2;
-  std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
-                   [&](int i, int j) {
-                     const double x = points[index(i)][axis], y = points[index(j)][axis];
-                     return x < y || (x == y && i < j);
+  std::nth_element(items.begin() + first, items.begin() + middle, items.begin() + last,
+                   [axis](const Item& a, const Item& b) {
+                     const double x = a.point[axis], y = b.point[axis];
+                     return x < y || (x == y && a.index < b.index);
                    });
-  build(order, first, middle, points, sizes);
+  build(items, first, middle);
   nodes_[at].first = static_cast<int>(nodes_.size());
   nodes_[at].count = 0;
-  build(order, middle, last, points, sizes);
+  build(items, middle, last);
 }
 
 SizePoints SizePoints::scaled(double factor) const {

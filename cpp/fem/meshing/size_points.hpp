@@ -28,8 +28,13 @@ class SizePoints {
     int count;        // leaf: number of points; inner: 0
   };
 
-  void build(std::vector<int>& order, int first, int last,
-             const std::vector<Eigen::Vector3d>& points, const std::vector<double>& sizes);
+  struct Item {
+    Eigen::Vector3d point;
+    double size;
+    int index;  // as given
+  };
+
+  void build(std::vector<Item>& items, int first, int last);
 
   std::vector<Node> nodes_;
   std::vector<Eigen::Vector3d> points_;

@@ -42,31 +42,16 @@ class Sampler {
   }
 
   void sample_triangle(int t) {
-    const Vector3d normal = triangle_normal(surface_, t);
-    if (normal.isZero()) return;
-    std::vector<std::array<Vector3d, 3>> pieces{
+    if (triangle_normal(surface_, t).isZero()) return;
+    std::vector<Piece> pieces{
         {corner(surface_, t, 0), corner(surface_, t, 1), corner(surface_, t, 2)}};
     while (!pieces.empty()) {
-      const std::array<Vector3d, 3> piece = pieces.back();
+      const Piece piece = pieces.back();
       pieces.pop_back();
-      const auto [longest, k] = longest_edge(piece);
-      const Vector3d center = (piece[0] + piece[1] + piece[2]) / 3.0;
-      double spacing = std::max(limit_, finest_), wall = limit_;
-      if (longest <= spacing) {
-        wall = thickness(t, center, -normal);
-        const double gap = thickness(t, center, normal);
-        if (gap < limit_) samples_.push_back({center, gap, 0.0});
-        spacing = std::max(kSpacing * std::min(wall, gap), finest_);
-      }
-      const bool whole = longest <= spacing;
-      if (whole || wall < limit_)
-        samples_.push_back(
-            {center, wall,
-             whole ? 0.5 * (piece[1] - piece[0]).cross(piece[2] - piece[0]).norm() : 0.0});
-      if (whole) continue;
-      const Vector3d middle = 0.5 * (piece[k] + piece[(k + 1) % 3]);
-      pieces.push_back({piece[k], middle, piece[(k + 2) % 3]});
-      pieces.push_back({middle, piece[(k + 1) % 3], piece[(k + 2) % 3]});
+      if (longest_edge(piece).first <= std::max(limit_, finest_))
+        sample_piece(t, piece);
+      else
+        halve(piece, pieces);
     }
   }
 
@@ -94,9 +79,47 @@ class Sampler {
   std::vector<WallSample> take() { return std::move(samples_); }
 
  private:
+  using Piece = std::array<Vector3d, 3>;  // of a triangle
+
+  // Halves a small piece of triangle t until it is as fine as the wall and the gap at it ask for.
+  void sample_piece(int t, const Piece& whole_piece) {
+    const Vector3d normal = triangle_normal(surface_, t);
+    const std::vector<int> nearby = opposite(whole_piece, normal);
+    std::vector<Piece> pieces{whole_piece};
+    while (!pieces.empty()) {
+      const Piece piece = pieces.back();
+      pieces.pop_back();
+      const Vector3d center = (piece[0] + piece[1] + piece[2]) / 3.0;
+      const double wall = thickness(t, center, -normal, nearby);
+      const double gap = thickness(t, center, normal, nearby);
+      if (gap < limit_) samples_.push_back({center, gap, 0.0});
+      const double spacing = std::max(kSpacing * std::min(wall, gap), finest_);
+      const bool whole = longest_edge(piece).first <= spacing;
+      if (whole || wall < limit_)
+        samples_.push_back(
+            {center, wall,
+             whole ? 0.5 * (piece[1] - piece[0]).cross(piece[2] - piece[0]).norm() : 0.0});
+      if (!whole) halve(piece, pieces);
+    }
+  }
+
+  // The triangles that walls and gaps at a piece can end at.
+  std::vector<int> opposite(const Piece& piece, const Vector3d& normal) const {
+    const Vector3d reach = (limit_ * normal.cwiseAbs()).array() + kOnLine * limit_;
+    return oracle_.in_box(piece[0].cwiseMin(piece[1]).cwiseMin(piece[2]) - reach,
+                          piece[0].cwiseMax(piece[1]).cwiseMax(piece[2]) + reach);
+  }
+
+  static void halve(const Piece& piece, std::vector<Piece>& pieces) {
+    const std::size_t k = longest_edge(piece).second;
+    const Vector3d middle = 0.5 * (piece[k] + piece[(k + 1) % 3]);
+    pieces.push_back({piece[k], middle, piece[(k + 2) % 3]});
+    pieces.push_back({middle, piece[(k + 1) % 3], piece[(k + 2) % 3]});
+  }
+
   int patch_of(int t) const { return patches_.of_triangle[static_cast<std::size_t>(t)]; }
 
-  static std::pair<double, std::size_t> longest_edge(const std::array<Vector3d, 3>& piece) {
+  static std::pair<double, std::size_t> longest_edge(const Piece& piece) {
     std::pair<double, std::size_t> best{-1.0, 0};
     for (std::size_t k = 0; k < 3; ++k)
       if (const double length = (piece[(k + 1) % 3] - piece[k]).norm(); length > best.first)
@@ -104,9 +127,10 @@ class Sampler {
     return best;
   }
 
-  // To the opposite side of the wall or gap; the limit if there is none.
-  double thickness(int t, const Vector3d& p, const Vector3d& direction) const {
-    const auto hit = oracle_.first_hit(p, p + limit_ * direction, t);
+  // To the opposite side of the wall or gap, one of `nearby`; the limit if there is none.
+  double thickness(int t, const Vector3d& p, const Vector3d& direction,
+                   const std::vector<int>& nearby) const {
+    const auto hit = oracle_.first_hit(p, p + limit_ * direction, t, nearby);
     if (!hit) return limit_;
     const double facing =
         -triangle_normal(surface_, t).dot(triangle_normal(surface_, hit->triangle));

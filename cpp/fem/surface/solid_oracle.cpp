@@ -72,6 +72,28 @@ struct Ray {
   }
 };
 
+// The crossing nearest to the start of a segment; of equally near ones, the first offered.
+struct Nearest {
+  Vector3d start, point = Vector3d::Zero();
+  double distance = kInfinity;  // squared
+  int triangle = -1;
+
+  void offer(const Ray& ray, const Vector3d (&corners)[3], int t) {
+    Vector3d crossing;
+    if (!ray.crosses(corners, crossing)) return;
+    const double d = (crossing - start).squaredNorm();
+    if (!(d < distance)) return;
+    distance = d;
+    point = crossing;
+    triangle = t;
+  }
+
+  std::optional<SolidOracle::Hit> hit() const {
+    if (triangle < 0) return {};
+    return SolidOracle::Hit{point, triangle};
+  }
+};
+
 double squared_distance(const Vector3d& p, const Vector3d& lower, const Vector3d& upper) {
   return (p - p.cwiseMax(lower).cwiseMin(upper)).squaredNorm();
 }
@@ -118,7 +140,9 @@ SolidOracle::SolidOracle(const SurfaceMesh& surface, const std::vector<int>& gro
   nodes_.reserve(n);
   build(0, static_cast<int>(n), centers);
   group_.resize(n);
+  place_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
+    place_[static_cast<std::size_t>(order_[i])] = static_cast<int>(i);
     corners_[i] = by_triangle[static_cast<std::size_t>(order_[i])];
     group_[i] = group[static_cast<std::size_t>(order_[i])];
   }
@@ -193,20 +217,26 @@ std::optional<SolidOracle::Hit> SolidOracle::first_hit(const Vector3d& a, const 
                                                        int except) const {
   if (a == b) return {};
   const Ray ray(a, b);
-  std::optional<Hit> found;
-  double nearest = kInfinity;
+  Nearest found{a};
   traverse([&](const Vector3d& lower, const Vector3d& upper) { return ray.enters(lower, upper); },
            [&](std::size_t i) {
-             Vector3d point;
-             if (order_[i] == except || !ray.crosses(corners_[i].x, point)) return false;
-             const double d = (point - a).squaredNorm();
-             if (d < nearest) {
-               nearest = d;
-               found = Hit{point, order_[i]};
-             }
+             if (order_[i] != except) found.offer(ray, corners_[i].x, order_[i]);
              return false;
            });
-  return found;
+  return found.hit();
+}
+
+std::optional<SolidOracle::Hit> SolidOracle::first_hit(const Vector3d& a, const Vector3d& b,
+                                                       int except,
+                                                       const std::vector<int>& candidates) const {
+  if (a == b) return {};
+  const Ray ray(a, b);
+  Nearest found{a};
+  for (const int t : candidates)
+    if (t != except)
+      found.offer(ray, corners_[static_cast<std::size_t>(place_[static_cast<std::size_t>(t)])].x,
+                  t);
+  return found.hit();
 }
 
 std::optional<SolidOracle::Piece> SolidOracle::clip(const Vector3d& base, const Vector3d& direction,

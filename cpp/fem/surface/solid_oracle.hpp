@@ -31,6 +31,10 @@ class SolidOracle {
   std::optional<Hit> first_hit(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                int except) const;
 
+  // The same of `candidates` only, which `in_box` gave: for many short segments in one box.
+  std::optional<Hit> first_hit(const Eigen::Vector3d& a, const Eigen::Vector3d& b, int except,
+                               const std::vector<int>& candidates) const;
+
   // The part within the (slightly enlarged) bounding box of the line base + s · direction, from
   // `first` to `last`, which may be infinite; empty if it misses the box.
   struct Piece {
@@ -74,6 +78,7 @@ class SolidOracle {
   std::vector<int> order_;        // triangles in the order of the leaves
   std::vector<Corners> corners_;  // in the same order
   std::vector<int> group_;        // in the same order
+  std::vector<int> place_;        // of each triangle in this order
 };
 
 }  // namespace codesign::fem

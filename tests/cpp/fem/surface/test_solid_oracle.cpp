@@ -100,6 +100,34 @@ TEST(SolidOracle, HitsLieOnTheSurfaceAndOnTheSegment) {
   EXPECT_FALSE(oracle.hit({1.3, 0.4, 0.5}, {1.3, 0.4, 2.0}));
 }
 
+TEST(SolidOracle, TheFirstHitAmongTheTrianglesOfABoxIsTheFirstHitInIt) {
+  const SurfaceMesh ball = sphere(40, 60);
+  const SolidOracle oracle(ball, std::vector<int>(ball.face.size(), 0));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.2, 1.2);
+  int hits = 0;
+  for (int box = 0; box < 50; ++box) {
+    const Vector3d middle(uniform(random), uniform(random), uniform(random));
+    const Vector3d reach = Vector3d::Constant(0.5);
+    const std::vector<int> nearby = oracle.in_box(middle - reach, middle + reach);
+    const auto in_box = [&] {
+      return (middle + 0.4 * Vector3d(uniform(random), uniform(random), uniform(random))).eval();
+    };
+    for (int i = 0; i < 100; ++i) {
+      const Vector3d a = in_box(), b = in_box();
+      const int except = i % 2 && !nearby.empty() ? nearby.front() : -1;
+      const auto all = oracle.first_hit(a, b, except);
+      const auto some = oracle.first_hit(a, b, except, nearby);
+      ASSERT_EQ(all.has_value(), some.has_value());
+      if (!all) continue;
+      ++hits;
+      EXPECT_EQ(all->triangle, some->triangle);
+      EXPECT_EQ(all->point, some->point);
+    }
+  }
+  EXPECT_GT(hits, 300);
+}
+
 TEST(SolidOracle, ClipsAVeryLongSegmentWithoutLosingDigits) {
   const SurfaceMesh surface = cube();
   const SolidOracle oracle(surface, surface.face);
