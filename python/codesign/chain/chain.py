@@ -153,7 +153,7 @@ def _evaluate(
     if answers and result.flights and all(flight.completed for flight in result.flights):
         documents |= _flown_strength(config, parts, robot, result, documents, answers)
     document = {"parts": documents, **flight_numbers(config, parts, robot, result, trajectory)}
-    verdict = judge(config, document, study.functions)
+    verdict = judge(config, {"design": design.to_dict(), **document}, study.functions)
     evaluation = Evaluation(
         design=design.to_dict(),
         status=verdict.status,

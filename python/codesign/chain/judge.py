@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from codesign.chain.saturation import explanation
@@ -18,7 +20,7 @@ CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a
 FLIGHT_MISSED = "flight_missed_share"  # of two lost designs the one that flew longer violates less
 
 Functions = Mapping[str, Callable[[Mapping[str, Any]], float]]
-Document = Mapping[str, Any]  # parts, flight, objective_families: as in `Evaluation`
+Document = Mapping[str, Any]  # design, parts, flight, objective_families: as in `Evaluation`
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +61,10 @@ def judge(
     """The verdict on the numbers of a design.
 
     Args:
-        config: the study's, as configured by the design. document: parts, flight, objective_families.
+        config: the study's, as configured by the design. document: design, parts, flight, objective_families.
         functions: the study's own functions of an evaluation by key, `module:function`.
         chosen: limits to judge; None: all of the study's.
-    Raises: StudyError: an objective or limit names a number that the evaluation does not have.
+    Raises: StudyError: an objective or limit names a number that the evaluation does not have; an own function fails.
     """
     flight = document["flight"]
     lost = bool(flight) and not flight["completed"]  # no flight: parts alone are judged
@@ -145,7 +147,7 @@ def case_limits(config: StudyConfig, otherwise: float) -> Iterator[Limit]:
 def value_of(document: Document, wanted: Quantity, functions: Functions) -> float | None:
     """A number of an evaluation [SI], None where it has none. Raises: StudyError: there is no such number."""
     if wanted.key in functions:
-        value = float(functions[wanted.key](document))
+        value = _called(wanted.key, functions[wanted.key], document)
         if not math.isfinite(value):
             raise StudyError(f"{wanted.key}: gave {value} for this design")
         return value
@@ -153,6 +155,16 @@ def value_of(document: Document, wanted: Quantity, functions: Functions) -> floa
         member: float | None = document["objective_families"].get("rms", {}).get(wanted.key)
         return member
     return read(document, wanted.path or wanted.key)
+
+
+def _called(name: str, function: Callable[[Document], float], document: Document) -> float:
+    """What an own function gives. Raises: StudyError: it failed; with the line."""
+    try:
+        return float(function(document))
+    except Exception as error:
+        frames = traceback.extract_tb(error.__traceback__)
+        place = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if len(frames) > 1 else ""
+        raise StudyError(f"{name}: {type(error).__name__}: {error}{place}") from error
 
 
 def watched(document: Document, judged: Mapping[str, float]) -> dict[str, float]:

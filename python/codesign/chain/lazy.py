@@ -91,7 +91,7 @@ def _flown_only(study: StudyData, design: Design, config: StudyConfig, rivals: S
     chosen = [
         limit for limit in limits(config) if _early(limit.quantity, config) or limit.quantity.key == FLIGHT_MISSED
     ]
-    verdict = judge(config, document, study.functions, chosen)
+    verdict = judge(config, {"design": design.to_dict(), **document}, study.functions, chosen)
     rival = None if verdict.status == "infeasible" else rival_of(rivals, verdict.objectives.values())
     if verdict.status != "infeasible" and rival is None:
         return None

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from codesign.chain import documents
-from codesign.chain.judge import judge, limits
+from codesign.chain.judge import Limit, judge, limits
 from codesign.chain.study import load_study
 from codesign.errors import StudyError
 from codesign.problem.quantities import QUANTITIES, quantity, read
@@ -96,6 +96,23 @@ def test_own_functions_of_an_evaluation(tmp_path):
     assert study.objectives == ("momentum", "costs:price")
     assert judge(study.config, DOCUMENT, study.functions).objectives == {"momentum": 1.5, "costs:price": 40.0}
     assert quantity("costs:price").label == "Price"
+
+
+def test_an_own_function_knows_the_design_and_its_faults_have_a_line(tmp_path):
+    new_study(tmp_path / "study")
+    (tmp_path / "study" / "costs.py").write_text(
+        "def price(evaluation):\n    return 2.0 * evaluation['design']['reach']\n\n"
+        "def wrong(evaluation):\n    return evaluation['desing']['reach']\n"
+    )
+    file = tmp_path / "study" / "study.toml"
+    text = file.read_text()
+    file.write_text(text.replace(MINIMIZED, 'minimize = ["momentum", "costs:price"]'))
+    study = load_study(file)
+    evaluation = study.evaluate(study.baseline)
+    assert evaluation.objectives["costs:price"] == 2.0 * study.baseline["reach"]
+    file.write_text(text.replace(MINIMIZED, 'minimize = ["momentum", "costs:wrong"]'))
+    with pytest.raises(StudyError, match=r"costs:wrong: KeyError: 'desing' \(costs.py, line 5\)"):
+        judge(study.config, DOCUMENT | {"design": {}}, load_study(file).functions, [Limit(quantity("costs:wrong"))])
 
 
 @pytest.mark.parametrize(

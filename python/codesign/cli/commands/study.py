@@ -8,7 +8,14 @@ from typing import Annotated
 import typer
 
 from codesign.cli.console import out, print_json
-from codesign.cli.options import DEFAULT_STUDY, JsonOption, StudyArgument, TrajectoryOption, parse_design
+from codesign.cli.options import (
+    DEFAULT_STUDY,
+    JsonOption,
+    StudyArgument,
+    TrajectoryOption,
+    complete_study,
+    parse_design,
+)
 from codesign.errors import StudyError
 
 commands = typer.Typer()
@@ -24,6 +31,10 @@ def new(
     jets: Annotated[str, typer.Option(help="Links of it that push, by commas; default: a multirotor's, by name.")] = "",
     mount: Annotated[str, typer.Option(help="Links that get an arm with a jet each, by commas.")] = "",
     count: Annotated[int, typer.Option(min=1, max=32, help="Jets around it, if neither is given or found.")] = 6,
+    template: Annotated[
+        str,
+        typer.Option("--from", help="Shipped study to copy, with all that it extends.", autocompletion=complete_study),
+    ] = "",
 ) -> int:
     """Writes a commented, runnable study to start from: a shipped one, or jets on arms for a robot of yours."""
     from codesign.study import new_study
@@ -32,8 +43,10 @@ def new(
     if urdf is None:
         if jets or mount:
             raise StudyError("--jets and --mount name links of the robot that --urdf gives")
-        files = new_study(folder)
+        files = new_study(folder, template or "gimbal_quad")
     else:
+        if template:
+            raise StudyError("--from copies a shipped study; a study for --urdf is written anew")
         written = study_of_robot(folder, urdf, _names(jets), _names(mount), count)
         files = written.files
         for note in written.notes:
