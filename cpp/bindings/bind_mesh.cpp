@@ -102,10 +102,10 @@ void bind_report(py::module_& m) {
                     "rounds of smaller elements that the surface's topology asked for")
       .def_readonly(
           "small_faults", &MeshReport::small_faults,
-          "places where the boundary tears on ledges of at most 0.05 mm and 0.0005 of the "
-          "extent, which no element follows")
+          "places of at most 0.05 mm and 0.0005 of the extent where the boundary touches itself, "
+          "on ledges that no element follows; the solid has the topology of the surface")
       .def_readonly("genus", &MeshReport::genus,
-                    "of each closed piece of the surface, and of the boundary but for small faults")
+                    "of each closed piece of the surface, and of the solid")
       .def_property_readonly(
           "surface_distance",
           [](const MeshReport& report) {

@@ -43,6 +43,13 @@ def hollow_cube():
     return box((40, 40, 40), (-20, -20, -20)) - box((20, 20, 20), (-10, -10, -10))
 
 
+def windowed_bar(lip_top):
+    """A bar of 10.3 x 18 x 6.8 with a bore along it whose mouth a lip closes but for a gap below it, and a window above
+    it where `lip_top` is less than 4.224."""
+    bore = m3.Manifold.cylinder(12.3067, 1.4241, 1.4241, 32).rotate((0, 90, 0)).translate((-1.0, 12.9746, 2.8))
+    return box((10.3067, 18, 6.8445)) - bore + box((5.1534, 18, lip_top - 2.7343), (9.8067, 0, 2.7343))
+
+
 def write_stl(solid, path: Path) -> Path:
     """Binary STL of a solid."""
     mesh = solid.to_mesh()

@@ -19,8 +19,8 @@ struct MeshReport {
   int peeled = 0;                  // flat boundary elements removed
   std::size_t questions = 0;       // of the refinement about solid and size: its work
   int refinements = 0;             // rounds of smaller elements, to keep the surface's topology
-  int small_faults = 0;            // where the boundary tears on ledges of at most 0.05 mm
-  std::vector<int> genus = {};     // of each closed piece of the surface
+  int small_faults = 0;            // where the boundary touches itself on ledges below 0.05 mm
+  std::vector<int> genus = {};     // of each closed piece of the surface, and of the solid
   double surface_distance = -1.0;  // largest between boundary and surface, m; -1: not measured
 };
 

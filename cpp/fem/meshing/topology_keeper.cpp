@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 
 #include "errors.hpp"
+#include "fem/mesh/solid_euler.hpp"
 #include "fem/meshing/surface_match.hpp"
 #include "fem/meshing/wall_size.hpp"
 
@@ -17,22 +19,28 @@ constexpr double kOfExtent = 5e-4;
 constexpr int kBreakdowns = 3;  // that are answered by another size
 constexpr double kOtherSize = 0.9;
 
-int total_genus(const Topology& topology) {
-  int genus = 0;
-  for (const int euler : topology.euler) genus += genus_of(euler);
-  return genus;
+int total_euler(const Topology& topology) {
+  return std::accumulate(topology.euler.begin(), topology.euler.end(), 0);
 }
 
-// What is different, in words.
-std::string difference(const Topology& found, const Topology& wanted) {
+// Of all pieces of a boundary with this sum of Euler characteristics.
+int total_genus(int euler, const Topology& wanted) {
+  return static_cast<int>(wanted.euler.size()) - euler / 2;
+}
+
+// What is different, in words. euler: that of the boundary by the solid.
+std::string difference(const Topology& found, int euler, const Topology& wanted) {
   if (found.euler.size() != wanted.euler.size())
     return std::to_string(found.euler.size()) + " closed boundaries instead of " +
            std::to_string(wanted.euler.size());
-  if (!found.is_manifold())
-    return std::to_string(found.open_edges + found.pinched_points) +
-           " edges and points where the boundary is not manifold";
-  return "genus " + std::to_string(total_genus(found)) + " instead of " +
-         std::to_string(total_genus(wanted));
+  std::string text;
+  if (euler != total_euler(wanted))
+    text = "genus " + std::to_string(total_genus(euler, wanted)) + " instead of " +
+           std::to_string(total_genus(total_euler(wanted), wanted));
+  if (found.is_manifold()) return text;
+  return text + (text.empty() ? "" : ", ") +
+         std::to_string(found.open_edges + found.pinched_points) +
+         " edges and points where the boundary is not manifold";
 }
 
 std::string place_text(const Eigen::Vector3d& p) {
@@ -54,12 +62,15 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
   const double resolved = std::min(kResolved, kOfExtent * extent(prepared_.surface.points));
   const auto large = std::count_if(mismatches.begin(), mismatches.end(),
                                    [&](const Mismatch& m) { return m.size > resolved; });
-  if (large == 0 && found.euler.size() == prepared_.topology.euler.size()) {
+  const int euler = 2 * solid_euler(mesh.tets.leftCols<4>());
+  if (large == 0 && found.euler.size() == prepared_.topology.euler.size() &&
+      euler == total_euler(prepared_.topology)) {
     small_ = static_cast<int>(mismatches.size());
     return true;
   }
   mismatch_ = "the mesh has another topology than its surface near " +
-              place_text(mismatches.front().place) + ": " + difference(found, prepared_.topology);
+              place_text(mismatches.front().place) + ": " +
+              difference(found, euler, prepared_.topology);
   if (round_ == options_.topology_rounds)
     throw MeshError(explain("it still has after " + std::to_string(round_) +
                             " rounds: a smaller edge length or a thicker wall is needed"));

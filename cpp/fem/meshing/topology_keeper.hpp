@@ -16,9 +16,10 @@ namespace codesign::fem {
 
 // Compares the boundary of a mesh with the surface: as many closed pieces, each of the same Euler
 // characteristic, manifold. Where they differ it asks for another mesh, made with more care and
-// with smaller elements there, a few times. Faults no larger than what surfaces are simplified by
-// (0.05 mm, 0.0005 of the extent) are only counted: they sit on ledges of that size, which elements
-// cannot follow at any edge length.
+// with smaller elements there, a few times. Places where the boundary touches itself, no larger
+// than what surfaces are simplified by (0.05 mm, 0.0005 of the extent), are only counted if the
+// solid has the Euler characteristic that the surface bounds: they sit on ledges of that size,
+// which elements cannot follow at any edge length.
 class TopologyKeeper {
  public:
   // `prepared` must outlive the keeper.
@@ -49,7 +50,7 @@ class TopologyKeeper {
   MeshOptions options_;
   int round_ = 0;
   int breakdowns_ = 0;
-  int small_ = 0;                  // faults too small to be refused
+  int small_ = 0;                  // faults that the solid does not know of
   std::string mismatch_;           // of the last mesh and where; empty before the first one
   std::vector<WallSample> walls_;  // once a mesh was refused
 };

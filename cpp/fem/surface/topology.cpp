@@ -2,33 +2,21 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <unordered_map>
+
+#include "fem/surface/disjoint_sets.hpp"
 
 namespace codesign::fem {
 namespace {
 
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t i, std::size_t j) { parent_[find(i)] = find(j); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 // Fans: corners of triangles about one point, joined through the edges they share.
 struct Fans {
-  Sets corners;
+  DisjointSets corners;
   int open_edges = 0;
 };
 
 Fans join_corners(const Triangles& triangles, const Neighbors& neighbors) {
-  Fans fans{Sets(3 * neighbors.size())};
+  Fans fans{DisjointSets(3 * neighbors.size())};
   for (std::size_t t = 0; t < neighbors.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const int other = neighbors[t][k];
@@ -45,8 +33,8 @@ Fans join_corners(const Triangles& triangles, const Neighbors& neighbors) {
 }
 
 // Pieces of the surface, by the first triangle found.
-Sets join_triangles(const Neighbors& neighbors) {
-  Sets pieces(neighbors.size());
+DisjointSets join_triangles(const Neighbors& neighbors) {
+  DisjointSets pieces(neighbors.size());
   for (std::size_t t = 0; t < neighbors.size(); ++t)
     for (const int other : neighbors[t])
       if (other >= 0) pieces.join(t, static_cast<std::size_t>(other));
@@ -64,7 +52,7 @@ std::size_t count_points(const Triangles& triangles) {
 Topology measure_topology(const Triangles& triangles) {
   const Neighbors neighbors = triangle_neighbors(triangles);
   Fans fans = join_corners(triangles, neighbors);
-  Sets pieces = join_triangles(neighbors);
+  DisjointSets pieces = join_triangles(neighbors);
   std::unordered_map<std::size_t, std::size_t> piece_of;  // root triangle -> piece
   std::vector<int> twice;  // 2 · Euler characteristic: a side of a triangle is half an edge
   std::size_t points = 0;

@@ -300,7 +300,7 @@ class MeshReport:
     @property
     def genus(self) -> list[int]:
         """
-        of each closed piece of the surface, and of the boundary but for small faults
+        of each closed piece of the surface, and of the solid
         """
     @property
     def peeled(self) -> int:
@@ -320,7 +320,7 @@ class MeshReport:
     @property
     def small_faults(self) -> int:
         """
-        places where the boundary tears on ledges of at most 0.05 mm and 0.0005 of the extent, which no element follows
+        places of at most 0.05 mm and 0.0005 of the extent where the boundary touches itself, on ledges that no element follows; the solid has the topology of the surface
         """
     @property
     def surface_distance(self) -> float | None:

@@ -203,8 +203,8 @@ def _warnings(solved: Solved) -> list[str]:
         )
     if faults := solved.mesh.report.small_faults:
         found.append(
-            f"the mesh tears or touches itself at {faults} places of at most 0.05 mm, on ledges that no element "
-            "follows: its topology may be another than that of the surface there"
+            f"the mesh touches itself at {faults} places of at most 0.05 mm, on ledges that no element follows: the "
+            "solid keeps the topology of the surface, but stresses on such ledges mean nothing"
         )
     if not result.peak_resolved:
         found.append(

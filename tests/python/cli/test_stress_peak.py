@@ -57,3 +57,12 @@ def test_the_stress_of_a_volume_is_not_above_the_peak(tmp_path):
     path = fem_surfaces.write_stl(fem_surfaces.hollow_cube(), tmp_path / "cube.stl")
     document = stress_document(path, 1e-3, ERGAL, ["near:0,0,-20"], ["near:0,0,20: 0 0 -250"])
     assert 0.0 < document["stress_50"] <= document["peak_stress"]
+
+
+def test_a_mesh_that_touches_itself_on_tiny_ledges_is_mentioned(tmp_path):
+    """A window 19 micrometers high."""
+    path = fem_surfaces.write_stl(fem_surfaces.windowed_bar(4.205), tmp_path / "bar.stl")
+    document = stress_document(path, 1e-3, ERGAL, ["normal:-1,0,0"], ["normal:1,0,0: 0 0 -10"])
+    faults = document["mesh"]["small_faults"]
+    assert faults > 0
+    assert sum(f"touches itself at {faults} places" in warning for warning in document["warnings"]) == 1

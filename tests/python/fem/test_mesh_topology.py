@@ -7,6 +7,7 @@ import manifold3d
 import numpy as np
 import pytest
 
+import fem_surfaces
 from codesign import fem
 from codesign.errors import MeshError, MeshLimitError
 
@@ -156,6 +157,23 @@ def test_a_rib_that_meets_a_taller_post_at_a_grazing_angle_keeps_the_groove_open
     assert_same_as_surface(mesh, surface, volume_tolerance=5e-3)
     assert mesh.report.small_faults == 0
     assert mesh.report.refinements <= 2
+
+
+@pytest.mark.parametrize("edge_length", [None, 1.8e-3])
+def test_a_window_lower_than_an_element_stays_open(edge_length):
+    """Twice as high as the faults that are only counted; closed it would be a manifold of another genus."""
+    surface = surface_of(fem_surfaces.windowed_bar(4.1102))
+    mesh = fem.tetrahedralize(surface, None if edge_length is None else fem.default_size(surface, edge_length))
+    assert mesh.report.genus == [2]
+    assert_same_as_surface(mesh, surface, volume_tolerance=5e-3)
+
+
+def test_a_boundary_that_touches_itself_on_a_tiny_ledge_bounds_the_solid_of_its_surface():
+    surface = surface_of(fem_surfaces.windowed_bar(4.205))
+    mesh = fem.tetrahedralize(surface)
+    assert mesh.report.small_faults > 0
+    assert mesh.report.genus == [2]
+    assert mesh.quality.volume == pytest.approx(fem.mass_properties(surface, 1.0).volume, rel=5e-3)
 
 
 def test_an_edge_length_far_too_small_is_refused_before_walls_are_measured():
