@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 Vector = NDArray[np.float64]
 
 EDGE_SHARE, FINE_EDGE_SHARE = 0.35, 0.2  # of the mean wall thickness
+MOST_ELEMENTS = 60_000  # about, that the mean wall thickness alone may ask for
 MAX_REFINEMENTS = 3  # halvings of the edge length around the peak
 LEAST_MEAN_NORMAL = 0.1  # length of a face's mean unit normal: 1 for a plane, 0.64 for a half bore, 0 for a whole one
 
@@ -122,7 +123,7 @@ class StressSettings:
     accuracy: "optimization" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
     error and its change are within the tolerance. exclusion, exclusion_distance [m]: where the peak stress is not read,
     as in `fem.StaticSystem`. edge_length: [m] of the elements of a part without its own size field; None: from its mean
-    wall thickness; "fine" ones are shorter in proportion. tolerance: wanted relative error of the peak stress. modes,
+    wall thickness, about MOST_ELEMENTS at the most; "fine" ones are shorter in proportion. tolerance: wanted relative error of the peak stress. modes,
     buckling: how many natural frequencies and buckling factors are wanted. memory_limit: [bytes] for the matrices and
     factors of one analysis; it decides between factor and iteration.
     """
@@ -199,8 +200,9 @@ def _edge_length(part: Part, surface: fem.SurfaceMesh, settings: StressSettings)
         return settings.edge_length * (share / EDGE_SHARE)
     corners = surface.points[surface.triangles]
     areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    thickness = 2.0 * part.mass_properties().volume / areas.sum()
-    return float(thickness * share)
+    volume = part.mass_properties().volume
+    affordable = np.cbrt(8.0 * volume / MOST_ELEMENTS)  # a long thin tube: fewer elements across its wall
+    return float(max(2.0 * volume / areas.sum() * EDGE_SHARE, affordable) * (share / EDGE_SHARE))
 
 
 def as_given(load: fem.AffineTraction) -> fem.Load:

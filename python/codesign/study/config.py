@@ -147,8 +147,8 @@ class FemConfig(Section, frozen=True, kw_only=True):
 
     exclusion: where the peak stress is not read, "local" (in proportion to what is near) or "published" (a fixed
     distance); see docs/fem.md. exclusion_distance_mm: instead of the rule's own distances; published: 3.
-    edge_length_mm: of the elements of parts that bring no size field; None: 0.35 of the mean wall thickness, which is
-    costly for thin tubes, where one element through the wall does.
+    edge_length_mm: of the elements of parts that bring no size field; None: 0.35 of the mean wall thickness, more
+    where that were over about 60 000 elements (thin tubes, where one element through the wall does).
     memory_limit_mib: for the matrices and factors of one part; what needs more is solved by iteration, or refused.
     """
 
