@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog, lsq_linear
 
 from codesign import dynamics as dyn
 from codesign.chain import chain
@@ -55,6 +54,8 @@ class Controllability:
 
 def controllability(model: dyn.Model, settings: dyn.FlightSettings) -> Controllability:
     """Judges a robot and its actuators at the start posture of a flight. Raises: ValueError: a frame is unknown."""
+    from scipy.optimize import lsq_linear  # a fifth of a second to import
+
     jets = _jets(model, settings)
     com = dyn.center_of_mass(model, settings.base_pose, settings.initial_joints)
     weight = np.array([0.0, 0.0, model.total_mass * GRAVITY, 0.0, 0.0, 0.0])
@@ -174,6 +175,8 @@ def _carried(
     joints: tuple[Array, Array],
 ) -> tuple[float, float]:
     """Least and largest multiple of the weight that thrusts, and joints turned a little, carry in balance; (0, 0)."""
+    from scipy.optimize import linprog
+
     low, high = np.maximum(joints[0], -TRIM_ANGLE), np.minimum(joints[1], TRIM_ANGLE)
     bounds = np.vstack([np.column_stack(thrusts), np.column_stack([low, high]), [0.0, np.inf]])
     balance = np.column_stack([thrust_map, joint_map, -weight]) / units[:, None]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import logging
 import os
 import sys
+from contextlib import AbstractContextManager, nullcontext
 from typing import Annotated
 
 import typer
@@ -45,9 +46,7 @@ def main() -> None:
     logging.basicConfig(level=logging.WARNING, stream=sys.stderr, format="%(levelname)s %(name)s: %(message)s")
     command = typer.main.get_command(app)
     try:
-        from codesign.interrupts import guarded
-
-        with guarded():
+        with _interruptible():
             code = command.main(standalone_mode=False)
     except BrokenPipeError:  # whoever read the output has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -70,6 +69,15 @@ def main() -> None:
     if code == INTERRUPTED:  # also what typer makes of KeyboardInterrupt
         err.print("interrupted")
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _interruptible() -> AbstractContextManager[None]:
+    """What ends long commands on Ctrl-C; help and version compute nothing and do without the native code."""
+    if len(sys.argv) == 1 or {"--help", "--version"} & set(sys.argv):
+        return nullcontext()
+    from codesign.interrupts import guarded
+
+    return guarded()
 
 
 def _typed(problem: CodesignError | ImportError | OSError) -> CodesignError:

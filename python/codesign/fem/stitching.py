@@ -11,9 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 Points = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -51,8 +48,7 @@ def count_pieces(triangles: Triangles) -> int:
     used, number = np.unique(triangles, return_inverse=True)
     corners = number.reshape(triangles.shape)
     ends = np.concatenate([corners[:, :2], corners[:, 1:]])
-    graph = coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(len(used), len(used)))
-    return int(connected_components(graph, directed=False)[0])
+    return _groups(ends[:, 0], ends[:, 1], len(used))[0]
 
 
 def without_flat(points: Points, triangles: Triangles, height: float) -> Triangles:
@@ -85,6 +81,8 @@ def split_t_junctions(points: Points, triangles: Triangles, tolerance: float) ->
 
     Returns: the triangles, and how many corners were found on edges.
     """
+    from scipy.spatial import cKDTree  # a quarter of a second to import, needed for damaged surfaces only
+
     junctions = 0
     for _ in range(_ROUNDS):
         edges, owners = open_edges(triangles)
@@ -128,14 +126,15 @@ def _between(points: Points, a: int, b: int, candidates: NDArray[np.int64], tole
 
 def merge_open_points(points: Points, triangles: Triangles, tolerance: float) -> tuple[Triangles, int]:
     """Merges points of open edges that lie within `tolerance` [m] of each other. Returns: triangles, points merged."""
+    from scipy.spatial import cKDTree
+
     corners = np.unique(open_edges(triangles)[0])
     if len(corners) == 0:
         return triangles, 0
     pairs = cKDTree(points[corners]).query_pairs(tolerance, output_type="ndarray")
     if len(pairs) == 0:
         return triangles, 0
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(corners), len(corners)))
-    groups, group = connected_components(graph, directed=False)
+    groups, group = _groups(pairs[:, 0], pairs[:, 1], len(corners))
     kept = np.full(groups, -1)
     kept[group[::-1]] = corners[::-1]  # the first of each group
     to = np.arange(len(points))
@@ -176,10 +175,17 @@ def oriented(triangles: Triangles) -> tuple[Triangles, int]:
 def shells_of(triangles: Triangles) -> NDArray[np.int64]:
     """(m,) number of the shell of each triangle (m, 3): what is connected through edges of exactly two triangles."""
     first, second, _ = _neighbors(triangles)
-    count = len(triangles)
+    return _groups(first, second, len(triangles))[1]
+
+
+def _groups(first: NDArray[np.int64], second: NDArray[np.int64], count: int) -> tuple[int, NDArray[np.int64]]:
+    """How many groups `count` things are, joined in pairs, and the group of each."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     graph = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
-    shells: NDArray[np.int64] = connected_components(graph, directed=False)[1].astype(np.int64)
-    return shells
+    groups, group = connected_components(graph, directed=False)
+    return int(groups), group.astype(np.int64)
 
 
 def _neighbors(triangles: Triangles) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.bool_]]:

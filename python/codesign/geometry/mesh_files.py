@@ -8,7 +8,6 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +51,8 @@ def write_3mf(
 
     counts: how many of each are wanted; one if absent. title: of the whole file.
     """
+    from xml.sax.saxutils import escape, quoteattr  # they load the whole of urllib
+
     counts = counts or {}
     resources, items = [], []
     copies = [(number, name) for number, name in enumerate(solids, start=1) for _ in range(counts.get(name, 1))]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
-
-import numpy as np
 
 from codesign.errors import DesignError
 from codesign.names import nearest
@@ -95,7 +94,7 @@ class Variable:
             number = float(value)
         except (TypeError, ValueError):
             raise DesignError(f"{self.name} = {value!r}: design values must be numbers") from None
-        if not np.isfinite(number):
+        if not math.isfinite(number):
             raise DesignError(f"{self.name}: {number!r} is not a finite number")
         return self._index_in_list(number) if self.values else self._index_on_grid(number)
 
@@ -108,8 +107,8 @@ class Variable:
         raise DesignError(f"{self.name} = {value_text(value)}: no such choice; {nearest(str(value), names)}")
 
     def _index_in_list(self, value: float) -> int:
-        numbers = np.array([float(number) for number in self.values])
-        index = int(np.argmin(np.abs(numbers - value)))
+        numbers = [float(number) for number in self.values]
+        index = min(range(len(numbers)), key=lambda i: abs(numbers[i] - value))
         if abs(numbers[index] - value) > GRID_TOLERANCE * max(1.0, abs(value)):
             unit = f" {self.unit}" if self.unit else ""
             raise DesignError(f"{self.name} = {value_text(value)}{unit}: not in the list {self}")
@@ -125,7 +124,7 @@ class Variable:
             )
         index = round(position)
         if abs(position - index) > GRID_TOLERANCE:
-            below, above = self.value(int(np.floor(position))), self.value(int(np.ceil(position)))
+            below, above = self.value(math.floor(position)), self.value(math.ceil(position))
             raise DesignError(
                 f"{self.name} = {value_text(value)}{unit}: off the grid of step {value_text(self.step)}{unit}; "
                 f"nearest values {value_text(below)} and {value_text(above)}"

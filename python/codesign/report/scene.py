@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yourdfpy
 from numpy.typing import NDArray
 
 from codesign.problem.design_space import DesignValue
@@ -177,9 +175,7 @@ def with_descendants(robot: RobotDescription, links: Iterable[str]) -> set[str]:
 
 def _materials(robot: RobotDescription) -> dict[str, tuple[float, float, float]]:
     """Colors of the robot's named materials."""
-    text = io.BytesIO(robot.to_text().encode())
-    read = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
-    return {m.name: tuple(m.color.rgba[:3]) for m in read.materials if m.color is not None}
+    return {name: (red, green, blue) for name, (red, green, blue, *_) in robot.material_colors().items()}
 
 
 def _link_pieces(
@@ -197,7 +193,7 @@ def _link_pieces(
         color = PLAIN
         if visual.material is not None:
             own = visual.material.color
-            color = tuple(own.rgba[:3]) if own is not None else colors.get(visual.material.name, PLAIN)
+            color = tuple(own.rgba[:3]) if own is not None else colors.get(visual.material.name or "", PLAIN)
         pieces.append(Piece(link, *solid, color))
     return pieces
 

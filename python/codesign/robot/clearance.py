@@ -14,14 +14,13 @@ from typing import Annotated, Any
 import manifold3d
 import msgspec
 import numpy as np
-import yourdfpy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 from codesign.dynamics import hull_distances
 from codesign.errors import MeshError, StudyError, UrdfError
 from codesign.robot.assembly import PartPlacement, place_points
 from codesign.robot.description import RobotDescription
+from codesign.robot.urdf_elements import Shape
 from codesign.transforms import Matrix, inverse
 from codesign.units import DEGREE, MILLIMETER
 
@@ -114,6 +113,8 @@ def telling_samples(history: Matrix, count: int) -> Indices:
 
 def hull_vertices(points: Matrix) -> Matrix:
     """Vertices (m, 3) of the convex hull of a solid's points (n, 3)."""
+    from scipy.spatial import ConvexHull  # a quarter of a second to import
+
     return np.ascontiguousarray(points[ConvexHull(points).vertices], dtype=float)
 
 
@@ -337,6 +338,8 @@ def axis_angle(points: Matrix) -> float:
 
     Zero where the axis meets the hull; else on an edge p + t (q − p), where its cosine is stationary.
     """
+    from scipy.spatial import ConvexHull
+
     hull = ConvexHull(points)
     facing = hull.equations[:, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -372,7 +375,7 @@ def _sphere_points() -> Matrix:
     return np.vstack([_ring(np.sqrt(1.0 - z * z), z) for z in heights])
 
 
-def shape_points(link: str, drawn: yourdfpy.Visual | yourdfpy.Collision, radius_scale: float = 1.0) -> Matrix:
+def shape_points(link: str, drawn: Shape, radius_scale: float = 1.0) -> Matrix:
     """Points (n, 3) of a primitive shape of a link, link axes [m]; rounds are polygons in the circle, times a scale.
 
     Raises: UrdfError if the shape is a mesh.

@@ -10,12 +10,12 @@ from collections.abc import Mapping
 from itertools import combinations
 
 import numpy as np
-import yourdfpy
 
 from codesign.robot.bodies import child_joints, rigid_bodies
 from codesign.robot.clearance import CYLINDER_SIDES, hull_vertices, pair_clearances, posture_poses, shape_points
 from codesign.robot.description import RobotDescription
 from codesign.robot.package import load_mesh
+from codesign.robot.urdf_elements import Shape
 from codesign.robot.urdf_xml import MOVING
 from codesign.transforms import Matrix
 
@@ -57,7 +57,7 @@ def collision_hulls(robot: RobotDescription) -> dict[str, list[Matrix]]:
     return hulls
 
 
-def _points(robot: RobotDescription, link: str, shape: yourdfpy.Collision) -> Matrix:
+def _points(robot: RobotDescription, link: str, shape: Shape) -> Matrix:
     mesh = shape.geometry.mesh
     if mesh is None:
         return shape_points(link, shape, CIRCUMSCRIBED)

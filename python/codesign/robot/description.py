@@ -1,7 +1,7 @@
 """A robot description as an immutable value: read, checked, edited by copy, written.
 
 The XML is the data: what an edit does not touch is written as it was read, digit for digit, with the elements that only
-other tools know (sensors, transmissions, simulator settings). yourdfpy gives the typed view of the same text.
+other tools know (sensors, transmissions, simulator settings). `urdf_elements` gives the typed view of the same text.
 """
 
 from __future__ import annotations
@@ -12,19 +12,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
-import yourdfpy
 from numpy.typing import ArrayLike
 
 from codesign.dynamics import check_urdf
 from codesign.errors import UrdfError
 from codesign.files import write_text
 from codesign.robot.inertial import Inertial
-from codesign.robot.urdf_xml import MOVING, number_text, parsed, read, resolved_mimics
+from codesign.robot.urdf_elements import Joint, Link, joints_of, links_of
+from codesign.robot.urdf_xml import MOVING, normalized, number_text, parsed, resolved_mimics
 from codesign.transforms import Matrix, require_pose, rotation_about, rpy_from_rotation
 
+Found = TypeVar("Found")
 UPPER_TRIANGLE = ("xx", "xy", "xz", "yy", "yz", "zz")
 
 
@@ -67,10 +68,7 @@ class RobotDescription:
         # A string has its characters already, whatever encoding it declares; lone surrogates are refused as no UTF-8.
         content = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
         root_link = check_urdf(content, isinstance(text, str), as_published)
-        robot = cls(root_link, directory, parsed(content, ("utf-8",) if isinstance(text, str) else (None, "utf-8")))
-        if not robot._model.validate():
-            raise UrdfError("; ".join(str(error) for error in robot._model.errors))
-        return robot
+        return cls(root_link, directory, parsed(content, ("utf-8",) if isinstance(text, str) else (None, "utf-8")))
 
     # ---- reading
 
@@ -107,12 +105,12 @@ class RobotDescription:
         """Sum of the masses of all links [kg]."""
         return sum(inertial.mass for name in self._links if (inertial := self.inertial(name)) is not None)
 
-    def link(self, name: str) -> yourdfpy.Link:
-        """The link as yourdfpy reads it (do not change it); UrdfError if there is none."""
+    def link(self, name: str) -> Link:
+        """The link (do not change its arrays); UrdfError if there is none."""
         return _find(self._links, name, "link")
 
-    def joint(self, name: str) -> yourdfpy.Joint:
-        """The joint as yourdfpy reads it (do not change it); UrdfError if there is none."""
+    def joint(self, name: str) -> Joint:
+        """The joint (do not change its arrays); UrdfError if there is none."""
         return _find(self._joints, name, "joint")
 
     def inertial(self, link: str) -> Inertial | None:
@@ -146,7 +144,7 @@ class RobotDescription:
             if name in self.mimics:
                 raise UrdfError(f"joint {name} mimics joint {self.mimics[name][0]}: give the position of that one")
         poses = {self.root_link: np.eye(4)}
-        children: dict[str, list[yourdfpy.Joint]] = {}
+        children: dict[str, list[Joint]] = {}
         for joint in self._joints.values():
             children.setdefault(joint.parent, []).append(joint)
         pending = [self.root_link]
@@ -321,16 +319,16 @@ class RobotDescription:
     # ---- internal
 
     @cached_property
-    def _model(self) -> yourdfpy.URDF:
-        return read(self._xml)
+    def _normalized(self) -> ET.Element:
+        return normalized(self._xml)
 
     @cached_property
-    def _links(self) -> dict[str, yourdfpy.Link]:
-        return {link.name: link for link in self._model.robot.links}
+    def _links(self) -> dict[str, Link]:
+        return {link.name: link for link in links_of(self._normalized)}
 
     @cached_property
-    def _joints(self) -> dict[str, yourdfpy.Joint]:
-        return {joint.name: joint for joint in self._model.robot.joints}
+    def _joints(self) -> dict[str, Joint]:
+        return {joint.name: joint for joint in joints_of(self._normalized)}
 
     def _element(self, tag: str, name: str) -> ET.Element:
         for element in self._xml.findall(tag):
@@ -347,23 +345,23 @@ class RobotDescription:
             if old.tag == element.tag and old.get("name") == element.get("name"):
                 xml[index] = element
         edited = RobotDescription(self.root_link, self.directory, xml)
-        if not vars(self).keys().isdisjoint(("_model", "_links", "_joints")):  # read already: all but one stays
+        if not vars(self).keys().isdisjoint(("_links", "_joints")):  # read already: all but one stays
             alone = ET.Element(xml.tag, name=self.name)
             alone.append(element)
-            one = read(alone).robot
-            vars(edited)["_links"] = self._links | {link.name: link for link in one.links}
-            vars(edited)["_joints"] = self._joints | {joint.name: joint for joint in one.joints}
+            one = normalized(alone)
+            vars(edited)["_links"] = self._links | {link.name: link for link in links_of(one)}
+            vars(edited)["_joints"] = self._joints | {joint.name: joint for joint in joints_of(one)}
         return edited
 
 
-def _find(named: Mapping[str, Any], name: str, kind: str) -> Any:
+def _find(named: Mapping[str, Found], name: str, kind: str) -> Found:
     try:
         return named[name]
     except KeyError:
         raise UrdfError(f"the robot has no {kind} {name!r}") from None
 
 
-def _joint_motion(joint: yourdfpy.Joint, position: ArrayLike) -> Matrix:
+def _joint_motion(joint: Joint, position: ArrayLike) -> Matrix:
     position = np.asarray(position, dtype=float)
     motion = np.broadcast_to(np.eye(4), (*position.shape, 4, 4)).copy()
     if joint.type in MOVING:

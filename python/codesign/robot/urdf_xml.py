@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import copy
-import io
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 from xml.parsers import expat
 
 import numpy as np
-import yourdfpy
 from numpy.typing import ArrayLike
 
 from codesign.errors import UrdfError
+from codesign.robot.urdf_elements import Joint
 from codesign.transforms import rotation_from_quaternion, rotation_from_rpy, rpy_from_rotation
 
 MOVING = ("revolute", "continuous", "prismatic")
@@ -40,12 +38,6 @@ def parsed(content: bytes, encodings: Sequence[str | None]) -> ET.Element:
         except expat.ExpatError as error:
             reason = error
     raise UrdfError(f"not readable text: {reason}")
-
-
-def read(xml: ET.Element) -> yourdfpy.URDF:
-    """Links and joints of a robot, or of some of its elements alone, as yourdfpy reads them."""
-    text = ET.tostring(normalized(xml))
-    return yourdfpy.URDF.load(io.BytesIO(text), build_scene_graph=False, load_meshes=False)
 
 
 def normalized(xml: ET.Element) -> ET.Element:
@@ -117,23 +109,17 @@ def _capsule(element: ET.Element, radius: float, length: float) -> Iterator[ET.E
         yield piece
 
 
-def resolved_mimics(joints: Mapping[str, Any]) -> dict[str, tuple[str, float, float]]:
+def resolved_mimics(joints: Mapping[str, Joint]) -> dict[str, tuple[str, float, float]]:
     """Joint that mimics -> the joint that it follows in the end, multiplier, offset.
 
-    joints: name -> joint as yourdfpy reads it, of a checked robot. Raises: UrdfError for circles and unknown joints.
+    joints: name -> joint of a checked robot. Raises: UrdfError for circles and unknown joints.
     """
 
     def followed(name: str) -> tuple[str, float, float] | None:
         joint = joints[name]
-        return (
-            None
-            if joint.mimic is None or joint.type not in MOVING
-            else (
-                joint.mimic.joint,
-                1.0 if joint.mimic.multiplier is None else joint.mimic.multiplier,
-                joint.mimic.offset or 0.0,
-            )
-        )
+        if joint.mimic is None or joint.type not in MOVING:
+            return None
+        return joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset
 
     resolved = {}
     for name in joints:

@@ -18,7 +18,7 @@ from codesign.study.imports import PACKAGE, imports_of, version_of_import
 DECIDING_WINGS = ("geometry", "fem", "parts", "robot", "problem", "study", "chain")
 # Whatever the engine imports, but for OCP, which writes STEP files, and pymoo, which ranks finished evaluations (no
 # search is continued with another one, see codesign.search.provenance).
-DECIDING_PACKAGES = ("numpy", "scipy", "manifold3d", "yourdfpy", "msgspec", "rainflow")
+DECIDING_PACKAGES = ("numpy", "scipy", "manifold3d", "msgspec", "rainflow")
 
 
 def study_identity(raw: RawStudy, path: Path, modules: Iterable[str]) -> Identity:

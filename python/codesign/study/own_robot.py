@@ -145,7 +145,7 @@ def _values(
     inertia = np.diag(dyn.locked_inertia(model, np.eye(4), list(posture.values()))[-3:, -3:])
     position = linear_gains(POSITION_FREQUENCY)
     attitude = attitude_gains(float(np.exp(np.log(inertia).mean())), ATTITUDE_POLE)
-    efforts = [robot.joint(joint).limit.effort or 0.0 for joint in posture]
+    efforts = [limit.effort or 0.0 for joint in posture if (limit := robot.joint(joint).limit) is not None]
     torque = max([LEAST_TORQUE, *efforts])
     senses = [DRAG_TORQUE * (-1) ** k for k in range(len(mounts))]
     return {
@@ -200,7 +200,9 @@ def _joint_group(robot: RobotDescription, posture: Mapping[str, float]) -> str:
     ranges = []
     for joint in posture:
         limit = robot.joint(joint).limit
-        ranges.append([math.ceil(math.degrees(limit.lower)), math.floor(math.degrees(limit.upper))])
+        assert limit is not None  # a joint without range is held
+        low, high = (math.degrees(end or 0.0) for end in (limit.lower, limit.upper))
+        ranges.append([math.ceil(low), math.floor(high)])
     lines = [
         comment,
         "[[flight.joint_groups]]",

@@ -13,7 +13,7 @@ from codesign.robot import description
 from codesign.robot.changes import RobotChange, Stretch, change_robot, inertial_of, pseudo_inertia
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
-from codesign.robot.urdf_xml import read
+from codesign.robot.urdf_xml import normalized
 
 VARIABLES = ("height", "shoulder_width", "hip_distance", "ankle_height", "foot_length")
 RANGES = {"height": (-40, 60), "shoulder_width": (-20, 60), "hip_distance": (-10, 60), "ankle_height": (-10, 60)}
@@ -169,7 +169,7 @@ def test_changed_robots_hover_above_the_ground(seed: int) -> None:
 def test_changes_read_single_elements_of_a_robot_that_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     values = {"height": 20.0, "shoulder_width": 35.0, "hip_distance": 25.0, "ankle_height": 15.0, "foot_length": -30.0}
     sizes: list[int] = []
-    monkeypatch.setattr(description, "read", lambda xml: sizes.append(len(xml)) or read(xml))
+    monkeypatch.setattr(description, "normalized", lambda xml: sizes.append(len(xml)) or normalized(xml))
     robot = changed(**values)
     known = {name: robot.link(name) for name in robot.link_names}
     assert set(sizes) == {1}

@@ -288,7 +288,7 @@ def test_odd_drawings_cost_no_robot():
         (False, pytest.approx(0.1)),
     ]
     assert shapes[2].geometry.cylinder.length == 0.4
-    assert robot.link("base").collisions == []
+    assert robot.link("base").collisions == ()
     assert RobotDescription.from_text(robot.to_text()).to_text() == robot.to_text()
 
 

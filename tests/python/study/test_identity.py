@@ -19,9 +19,8 @@ from codesign.study.loading import _load
 from fake_study import study
 
 CHAIN = PACKAGE / "chain" / "study.py"
-# exact geometry for STEP files; ranking of finished evaluations; drawings of parts
-NOT_LOADED = {"OCP", "pymoo", "matplotlib", "ezdxf"}
-NO_NUMBERS = NOT_LOADED | {"trimesh"}  # meshes of packages and GLB files, which no evaluation writes
+# exact geometry for STEP files; ranking of finished evaluations; drawings of parts; meshes of packages and GLB files
+NOT_LOADED = {"OCP", "pymoo", "matplotlib", "ezdxf", "trimesh"}
 
 
 @pytest.fixture
@@ -52,7 +51,7 @@ def test_the_engine_is_all_that_the_chain_imports():
 def test_the_libraries_are_all_that_the_engine_imports():
     files = fingerprint.engine_files()
     modules = {f"codesign.{name.removesuffix('.py').replace('/', '.')}": file for name, file in files.items()}
-    assert imports_of(modules).libraries - NO_NUMBERS == set(DECIDING_PACKAGES)
+    assert imports_of(modules).libraries - NOT_LOADED == set(DECIDING_PACKAGES)
 
 
 def test_a_library_left_out_is_not_even_loaded_by_an_evaluation():
@@ -63,6 +62,16 @@ def test_a_library_left_out_is_not_even_loaded_by_an_evaluation():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_study_is_loaded_and_help_is_printed_without_what_they_do_not_need():
+    loading = "import sys; from codesign import load_study; load_study('ironcub_paper')"
+    helping = "import sys; sys.argv[1:] = ['--help']; from codesign.cli.main import main"
+    for code, unneeded in ((loading, NOT_LOADED | {"scipy", "urllib.request"}), (helping, NOT_LOADED | {"numpy"})):
+        ends = f"print(sorted({unneeded} & set(sys.modules)))"
+        asked = "\ntry: main()\nexcept SystemExit: pass\n" if "main" in code else "\n"
+        done = subprocess.run([sys.executable, "-c", code + asked + ends], capture_output=True, text=True, check=True)
+        assert done.stdout.splitlines()[-1] == "[]"
 
 
 @pytest.mark.parametrize("package", DECIDING_PACKAGES)

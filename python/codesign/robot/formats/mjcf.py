@@ -10,7 +10,6 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
 import numpy as np
-import yourdfpy
 
 from codesign import dynamics as dyn
 from codesign.errors import UrdfError
@@ -18,6 +17,7 @@ from codesign.robot.bodies import child_joints, depth_first, has_mass, rigid_bod
 from codesign.robot.collisions import Pairs
 from codesign.robot.description import RobotDescription
 from codesign.robot.jets import torque_limit
+from codesign.robot.urdf_elements import Material, Mesh, Shape
 from codesign.robot.urdf_xml import MOVING, number_text
 from codesign.transforms import Matrix, quaternion
 
@@ -91,9 +91,7 @@ class _Bodies:
                 _append_joint(body, self.robot, name)
             self.fill(body, joint.child)
 
-    def _append_geom(
-        self, element: ET.Element, shape: yourdfpy.Visual | yourdfpy.Collision, settings: dict[str, str]
-    ) -> None:
+    def _append_geom(self, element: ET.Element, shape: Shape, settings: dict[str, str]) -> None:
         geometry, origin = shape.geometry, shape.origin
         if geometry.box is not None:
             form = {"type": "box", "size": number_text(0.5 * np.asarray(geometry.box.size, dtype=float))}
@@ -103,11 +101,12 @@ class _Bodies:
         elif geometry.sphere is not None:
             form = {"type": "sphere", "size": number_text(geometry.sphere.radius)}
         else:
+            assert geometry.mesh is not None  # the last kind
             form = {"type": "mesh", "mesh": self._mesh(geometry.mesh)}
         place = {} if origin is None else _placed(origin)
         ET.SubElement(element, "geom", {**form, **place, "mass": "0", **settings})
 
-    def _mesh(self, mesh: yourdfpy.Mesh) -> str:
+    def _mesh(self, mesh: Mesh) -> str:
         filename = mesh.filename
         scale = number_text(np.broadcast_to(1.0 if mesh.scale is None else mesh.scale, 3))
         if (filename, scale) not in self.meshes:
@@ -118,7 +117,7 @@ class _Bodies:
             ET.SubElement(self.assets, "mesh", name=name, file=filename, scale=scale, inertia="shell")
         return self.meshes[filename, scale]
 
-    def _color(self, material: yourdfpy.Material | None) -> dict[str, str]:
+    def _color(self, material: Material | None) -> dict[str, str]:
         rgba = self.colors.get(getattr(material, "name", None) or "")
         return {} if rgba is None else {"rgba": number_text(rgba)}
 

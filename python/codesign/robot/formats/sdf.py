@@ -8,7 +8,6 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 
 import numpy as np
-import yourdfpy
 from numpy.typing import ArrayLike
 
 from codesign import dynamics as dyn
@@ -18,6 +17,7 @@ from codesign.robot.collisions import Pairs
 from codesign.robot.description import RobotDescription
 from codesign.robot.formats.drake_filters import collision_filters
 from codesign.robot.jets import torque_limit
+from codesign.robot.urdf_elements import Geometry
 from codesign.robot.urdf_xml import MOVING, number_text
 from codesign.transforms import Matrix, inverse, rpy_from_rotation
 
@@ -200,7 +200,7 @@ def _shifted(xyz: Matrix) -> Matrix:
     return T
 
 
-def _geometry(geometry: yourdfpy.Geometry) -> ET.Element:
+def _geometry(geometry: Geometry) -> ET.Element:
     element = ET.Element("geometry")
     box, cylinder, sphere, mesh = geometry.box, geometry.cylinder, geometry.sphere, geometry.mesh
     if box is not None:
@@ -211,7 +211,7 @@ def _geometry(geometry: yourdfpy.Geometry) -> ET.Element:
         ET.SubElement(item, "length").text = number_text(cylinder.length)
     elif sphere is not None:
         ET.SubElement(ET.SubElement(element, "sphere"), "radius").text = number_text(sphere.radius)
-    else:
+    elif mesh is not None:
         item = ET.SubElement(element, "mesh")
         ET.SubElement(item, "uri").text = mesh.filename
         ET.SubElement(item, "scale").text = number_text(np.broadcast_to(1.0 if mesh.scale is None else mesh.scale, 3))
