@@ -1,0 +1,237 @@
+#include "dynamics/dense_kernels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+// Compiled twice and picked when the library loads: for AVX2, and for what every machine has. AVX2
+// alone has no fused multiply-add, so both round alike.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define CODESIGN_BOTH_WIDTHS __attribute__((target_clones("avx2", "default")))
+#else
+#define CODESIGN_BOTH_WIDTHS
+#endif
+
+namespace codesign::dynamics {
+
+namespace {
+
+// Four rows of a column: one AVX register or two of SSE2.
+using Four = double __attribute__((vector_size(32)));
+constexpr int kRows = 4;
+
+// Columns of A that are scaled at a time; a multiple of the three that add_outer_product sums
+// first.
+constexpr int kChunk = 48;
+
+__attribute__((always_inline)) inline void load(const double* from, Four& rows) {
+  std::memcpy(&rows, from, sizeof(rows));
+}
+
+__attribute__((always_inline)) inline void store(const Four& rows, double* to) {
+  std::memcpy(to, &rows, sizeof(rows));
+}
+
+// Two neighboring columns of C at rows starting where `a` does: + Σ_k f_k a_k.
+__attribute__((always_inline)) inline void add_columns(const double* a, int m, int a_stride,
+                                                       const double* f0, const double* f1,
+                                                       Four& sum0, Four& sum1) {
+  Four x, y, z;
+  int k = 0;
+  for (; k + 3 <= m; k += 3) {
+    load(a + k * a_stride, x);
+    load(a + (k + 1) * a_stride, y);
+    load(a + (k + 2) * a_stride, z);
+    sum0 += f0[k] * x + f0[k + 1] * y + f0[k + 2] * z;
+    sum1 += f1[k] * x + f1[k + 1] * y + f1[k + 2] * z;
+  }
+  for (; k < m; ++k) {
+    load(a + k * a_stride, x);
+    sum0 += f0[k] * x;
+    sum1 += f1[k] * x;
+  }
+}
+
+// Rows of column j of a matrix whose first j columns are factored: − Σ_k l_k a_k, k < j; `row` is
+// where those of column 0 start.
+__attribute__((always_inline)) inline void take_columns(const double* a, int row, int j, int stride,
+                                                        Four& sum) {
+  Four w, x, y, z;
+  int k = 0;
+  for (; k + 4 <= j; k += 4) {
+    const double* c0 = a + k * stride;
+    const double* c1 = c0 + stride;
+    const double* c2 = c1 + stride;
+    const double* c3 = c2 + stride;
+    load(c0 + row, w);
+    load(c1 + row, x);
+    load(c2 + row, y);
+    load(c3 + row, z);
+    sum -= (c0[j] * w + c1[j] * x) + (c2[j] * y + c3[j] * z);
+  }
+  for (; k < j; ++k) {
+    const double* c = a + k * stride;
+    load(c + row, w);
+    sum -= c[j] * w;
+  }
+}
+
+// 1 / √pivot; zero if that is not a positive finite number.
+inline double inverse_root(double pivot) {
+  if (!(pivot > 0.0)) return 0.0;
+  const double inverse = 1.0 / std::sqrt(pivot);
+  return std::isfinite(inverse) ? inverse : 0.0;
+}
+
+}  // namespace
+
+// Pairs of columns, four rows at a time from the last row up. The top four rows of a pair may
+// overlap the four below: they are summed first and stored last, so that both start from the same
+// C. The last columns, shorter than four rows, go one by one.
+CODESIGN_BOTH_WIDTHS
+void add_outer_product(double* c, int n, int c_stride, const double* a, int m, int a_stride,
+                       double factor) {
+  double f[2][kChunk];
+  for (int start = 0; start < m; start += kChunk, a += kChunk * a_stride) {
+    const int chunk = std::min(kChunk, m - start);
+    int j = 0;
+    for (; j + kRows <= n; j += 2) {
+      for (int k = 0; k < chunk; ++k) {
+        f[0][k] = factor * a[k * a_stride + j];
+        f[1][k] = factor * a[k * a_stride + j + 1];
+      }
+      double* c0 = c + j * c_stride;
+      double* c1 = c0 + c_stride;
+      Four top0, top1, sum0, sum1;
+      load(c0 + j, top0);
+      load(c1 + j, top1);
+      const double above = c1[j];  // of the diagonal: stays
+      add_columns(a + j, chunk, a_stride, f[0], f[1], top0, top1);
+      top1[0] = above;
+      for (int i = n - kRows; i > j; i -= kRows) {
+        load(c0 + i, sum0);
+        load(c1 + i, sum1);
+        add_columns(a + i, chunk, a_stride, f[0], f[1], sum0, sum1);
+        store(sum0, c0 + i);
+        store(sum1, c1 + i);
+      }
+      store(top0, c0 + j);
+      store(top1, c1 + j);
+    }
+    for (; j < n; ++j) {
+      for (int i = j; i < n; ++i) {
+        double sum = c[j * c_stride + i];
+        int k = 0;
+        for (; k + 3 <= chunk; k += 3) {
+          const double* x = a + k * a_stride;
+          const double* y = x + a_stride;
+          const double* z = y + a_stride;
+          sum += factor * x[j] * x[i] + factor * y[j] * y[i] + factor * z[j] * z[i];
+        }
+        for (; k < chunk; ++k) sum += factor * a[k * a_stride + j] * a[k * a_stride + i];
+        c[j * c_stride + i] = sum;
+      }
+    }
+  }
+}
+
+// Columns from the left; rows of each as in add_outer_product.
+CODESIGN_BOTH_WIDTHS
+bool cholesky_in_place(double* a, int m, int stride) {
+  int j = 0;
+  for (; j + kRows <= m; ++j) {
+    double* column = a + j * stride;
+    Four top, sum;
+    load(column + j, top);
+    take_columns(a, j, j, stride, top);
+    const double inverse = inverse_root(top[0]);
+    if (inverse == 0.0) return false;
+    for (int i = m - kRows; i > j; i -= kRows) {
+      load(column + i, sum);
+      take_columns(a, i, j, stride, sum);
+      store(sum * inverse, column + i);
+    }
+    top *= inverse;
+    top[0] = inverse;
+    store(top, column + j);
+  }
+  for (; j < m; ++j) {
+    double* column = a + j * stride;
+    for (int i = j; i < m; ++i) {
+      double sum = column[i];
+      int k = 0;
+      for (; k + 4 <= j; k += 4) {
+        const double* c0 = a + k * stride;
+        const double* c1 = c0 + stride;
+        const double* c2 = c1 + stride;
+        const double* c3 = c2 + stride;
+        sum -= (c0[j] * c0[i] + c1[j] * c1[i]) + (c2[j] * c2[i] + c3[j] * c3[i]);
+      }
+      for (; k < j; ++k) sum -= a[k * stride + j] * a[k * stride + i];
+      column[i] = sum;
+    }
+    const double inverse = inverse_root(column[j]);
+    if (inverse == 0.0) return false;
+    for (int i = j + 1; i < m; ++i) column[i] *= inverse;
+    column[j] = inverse;
+  }
+  return true;
+}
+
+void cholesky_solve(const double* a, int m, int stride, double* b) {
+  for (int j = 0; j < m; ++j) {
+    const double* column = a + j * stride;
+    const double x = b[j] * column[j];
+    b[j] = x;
+    for (int i = j + 1; i < m; ++i) b[i] -= x * column[i];
+  }
+  for (int j = m - 1; j >= 0; --j) {
+    const double* column = a + j * stride;
+    double even = 0.0, odd = 0.0;
+    int i = j + 1;
+    for (; i + 2 <= m; i += 2) {
+      even += column[i] * b[i];
+      odd += column[i + 1] * b[i + 1];
+    }
+    if (i < m) even += column[i] * b[i];
+    b[j] = (b[j] - (even + odd)) * column[j];
+  }
+}
+
+bool lu_in_place(double* a, int m, int stride, int* pivots) {
+  for (int j = 0; j < m; ++j) {
+    double* column = a + j * stride;
+    int pivot = j;
+    for (int i = j + 1; i < m; ++i) {
+      if (std::abs(column[i]) > std::abs(column[pivot])) pivot = i;
+    }
+    pivots[j] = pivot;
+    if (!(std::abs(column[pivot]) > 0.0)) return false;
+    if (pivot != j) {
+      for (int k = 0; k < m; ++k) std::swap(a[k * stride + j], a[k * stride + pivot]);
+    }
+    for (int i = j + 1; i < m; ++i) column[i] /= column[j];
+    for (int k = j + 1; k < m; ++k) {
+      double* other = a + k * stride;
+      const double x = other[j];
+      for (int i = j + 1; i < m; ++i) other[i] -= x * column[i];
+    }
+  }
+  return true;
+}
+
+void lu_solve(const double* a, int m, int stride, const int* pivots, double* b) {
+  for (int j = 0; j < m; ++j) std::swap(b[j], b[pivots[j]]);
+  for (int j = 0; j < m; ++j) {
+    const double* column = a + j * stride;
+    for (int i = j + 1; i < m; ++i) b[i] -= b[j] * column[i];
+  }
+  for (int j = m - 1; j >= 0; --j) {
+    const double* column = a + j * stride;
+    b[j] /= column[j];
+    for (int i = 0; i < j; ++i) b[i] -= b[j] * column[i];
+  }
+}
+
+}  // namespace codesign::dynamics
