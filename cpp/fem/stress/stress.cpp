@@ -1,6 +1,9 @@
 #include "fem/stress/stress.hpp"
 
 #include <algorithm>
+#include <compare>
+#include <functional>
+#include <vector>
 
 #include "fem/mesh/tet10.hpp"
 #include "fem/stress/surface_distance.hpp"
@@ -34,25 +37,41 @@ Eigen::VectorXd von_mises(const Stresses& stress) {
   return result;
 }
 
+namespace {
+
+// Of an integration point; ordered by stress.
+struct Sample {
+  double stress, volume;
+  int element;
+  auto operator<=>(const Sample&) const = default;
+};
+
+Eigen::Vector3d centroid(const TetMesh& mesh, int element) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 4; ++i) sum += 0.25 * mesh.nodes.row(mesh.tets(element, i)).transpose();
+  return sum;
+}
+
+}  // namespace
+
 double stress_of_volume(const TetMesh& mesh, const PointStresses& points,
                         const std::vector<int>& clamped, double distance, double volume) {
   const SurfaceDistance clamp(mesh, clamped);
-  std::vector<std::pair<double, double>> samples;  // stress, volume
-  for (int e = 0; e < mesh.tets.rows(); ++e) {
-    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-    for (int i = 0; i < 4; ++i) centroid += 0.25 * mesh.nodes.row(mesh.tets(e, i)).transpose();
-    if (clamp.within(centroid, distance)) continue;
-    for (int q = 4 * e; q < 4 * e + 4; ++q) {
-      samples.emplace_back(von_mises(Voigt(points.stress.row(q).transpose())), points.volume[q]);
-    }
+  std::vector<Sample> samples;
+  samples.reserve(static_cast<std::size_t>(points.volume.size()));
+  for (int q = 0; q < points.volume.size(); ++q) {
+    samples.push_back(
+        {von_mises(Voigt(points.stress.row(q).transpose())), points.volume[q], q / 4});
   }
   std::sort(samples.begin(), samples.end(), std::greater<>());
-  double above = 0.0;
-  for (const auto& [stress, share] : samples) {
-    above += share;
-    if (above >= volume) return stress;
+  double above = 0.0, lowest = 0.0;
+  for (const Sample& sample : samples) {
+    if (clamp.within(centroid(mesh, sample.element), distance)) continue;
+    lowest = sample.stress;
+    above += sample.volume;
+    if (above >= volume) break;
   }
-  return samples.empty() ? 0.0 : samples.back().first;
+  return lowest;
 }
 
 }  // namespace codesign::fem

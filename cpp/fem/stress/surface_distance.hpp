@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 #include "fem/mesh/tet_mesh.hpp"
@@ -35,15 +37,27 @@ class SurfaceDistance {
 
  private:
   struct Piece {  // flat triangle; a segment has c == b
-    Eigen::Vector3d a, b, c, center;
+    Eigen::Vector3d a, b, c;
+    Eigen::Vector3d normal;  // unit; zero of a segment
+  };
+  struct Ball {  // around a piece
+    Eigen::Vector3d center;
     double radius = 0.0, reach = 0.0;
+    int piece = 0;
   };
   void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
            double reach);
 
-  std::vector<Piece> pieces_;  // by center[axis_]
-  Eigen::Index axis_ = 0;      // along which their centers spread farthest
-  double max_extent_ = 0.0;    // of radius + reach
+  bool reaches(const Ball& ball, const Eigen::Vector3d& point, double more) const;
+  int cell(const Eigen::Vector3d& point, Eigen::Index axis) const;
+
+  std::vector<Piece> pieces_;
+  std::vector<Ball> balls_;      // by cell of a grid over their centers, those along x in a row
+  std::vector<int> first_;       // (cells + 1) of balls_
+  Eigen::AlignedBox3d centers_;  // box around them
+  double edge_ = 1.0;            // of a cell [m]
+  std::array<int, 3> cells_{1, 1, 1};
+  double max_extent_ = 0.0;  // of radius + reach
 };
 
 }  // namespace codesign::fem
