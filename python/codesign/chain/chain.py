@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from codesign import _core
 from codesign import dynamics as dyn
+from codesign.chain.clearances import clearances
 from codesign.chain.documents import flight_document, objective_families
-from codesign.chain.flight import find_trajectory, flight_duration, flight_seeds, flight_settings, joint_names, refusals
+from codesign.chain.flight import find_trajectory, flight_duration, flight_seeds, flight_settings, refusals
 from codesign.chain.flown import decided_cases, with_flown
 from codesign.chain.judge import judge
 from codesign.chain.loads import asked_of, carried_masses, case_settings, flown_settings
@@ -30,16 +30,13 @@ from codesign.problem.design_space import Design, DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.robot.assembly import PartBody, assemble
 from codesign.robot.changes import change_robot
-from codesign.robot.clearance import convex_pieces, flown_interference
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
 from codesign.study.choices import numbers_of
 from codesign.study.config import StudyConfig
 from codesign.study.parts import make_part
-from codesign.transforms import Matrix
 from codesign.units import GIGA, MEBIBYTE, MEGA, MILLIMETER
 
-CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
 # Answers of parts to unit loads, by cache key: the last of this process, since a search and its tasks repeat parts.
 _ANSWERS: Recent[list[_core.fem.UnitResponses]] = Recent(4)
 MODES = 3  # natural frequencies of a part, where a study limits the first
@@ -50,16 +47,20 @@ if TYPE_CHECKING:
 
 
 def evaluate(
-    study: StudyData, design: Design, trajectory: str | None = None, cache: PartCache | None = None
+    study: StudyData,
+    design: Design,
+    trajectory: str | None = None,
+    cache: PartCache | None = None,
+    flown: Flown | None = None,
 ) -> Evaluation:
-    """One design through the whole chain.
+    """One design through the whole chain; `flown`: what of it was done before.
 
     A CodesignError on the way (no mesh, say) gives a failed evaluation; anything else is a bug and is raised.
     Raises: StudyError if there is no such trajectory.
     """
     _check_trajectory(study.config, trajectory)
     try:
-        return _evaluate(study, design, trajectory, cache)[0]
+        return _evaluate(study, design, trajectory, cache, flown)[0]
     except CodesignError as error:
         return Evaluation.failure(design.to_dict(), f"{type(error).__name__}: {error}", provenance(study))
 
@@ -108,13 +109,64 @@ class Computed:
     seeds: tuple[int, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A design before anything of it is analyzed or flown, by the names of its parts.
+
+    stress: how parts are analyzed. keys: of their numbers in the cache. known: the numbers that the cache has.
+    masses: of the parts. robot: with the parts in it. seconds: what making it took.
+    """
+
+    parts: dict[str, Part]
+    stress: dict[str, StressSettings]
+    keys: dict[str, str]
+    known: dict[str, dict[str, Any]]
+    masses: dict[str, Any]
+    robot: RobotDescription
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """A design that has flown, before its parts are analyzed.
+
+    seconds: what that took. numbers: those of its flight, if clearances are among them.
+    """
+
+    made: Made
+    computed: Computed
+    seconds: float
+    numbers: dict[str, Any] | None = None
+
+
+def make(
+    study: StudyData, design: Mapping[str, DesignValue], config: StudyConfig, cache: PartCache | None = None
+) -> Made:
+    """Parts and robot of a design, and what the cache knows of them."""
+    start = time.perf_counter()
+    parts = build_parts(study, design, config)
+    stress = {name: stress_settings(config, name) for name in parts}
+    keys = {name: _part_key(study, part, stress[name]) for name, part in parts.items()}
+    known = _known_documents(keys, cache)
+    masses = {name: _mass(known[name]) if name in known else part.mass_properties() for name, part in parts.items()}
+    robot = _assemble(study, design, config, parts, masses)
+    return Made(parts, stress, keys, known, masses, robot, time.perf_counter() - start)
+
+
 def compute(
-    study: StudyData, config: StudyConfig, cases: list[_core.PartCase], robot: RobotDescription, trajectory: str | None
+    study: StudyData,
+    config: StudyConfig,
+    cases: list[_core.PartCase],
+    robot: RobotDescription,
+    trajectory: str | None,
+    flown: Computed | None = None,
 ) -> Computed:
-    """Meshes and solves the parts; flies the robot if the study has a flight."""
-    if config.flight is None:
+    """Meshes and solves the parts; flies the robot if the study has a flight. flown: the flight, if it is known."""
+    if config.flight is None or flown is not None:
         start = time.perf_counter()
-        return Computed([_core.analyze_part(case) for case in cases], [], {"fem": time.perf_counter() - start})
+        analyses = [_core.analyze_part(case) for case in cases]
+        done = flown or Computed([], [], {})
+        return replace(done, parts=analyses, seconds=done.seconds | {"fem": time.perf_counter() - start})
     name = trajectory or config.flight.trajectory
     settings = flight_settings(config.flight, find_trajectory(config, name))
     with refusals(study.path):
@@ -124,35 +176,37 @@ def compute(
 
 
 def _evaluate(
-    study: StudyData, design: Design, trajectory: str | None, cache: PartCache | None
+    study: StudyData,
+    design: Design,
+    trajectory: str | None,
+    cache: PartCache | None,
+    flown: Flown | None = None,
 ) -> tuple[Evaluation, Computed]:
     start = time.perf_counter()
     trajectory, sample = split_sample(trajectory)
     config, values = study.configured(design), dict(design)
     if sample is not None:
         config, values = made(config, values, sample)
-    parts = build_parts(study, values, config)
-    stress = {name: stress_settings(config, name) for name in parts}
-    keys = {name: _part_key(study, part, stress[name]) for name, part in parts.items()}
-    known = _known_documents(keys, cache)
+    done = flown.made if flown is not None else make(study, values, config, cache)
+    parts, stress, keys, known = done.parts, done.stress, done.keys, done.known
     answers = {name: _ANSWERS[keys[name]] for name in parts if keys[name] in _ANSWERS}
-    masses = {name: _mass(known[name]) if name in known else part.mass_properties() for name, part in parts.items()}
-    robot = _assemble(study, values, config, parts, masses)
     wanted = [name for name in parts if name not in known or (stress[name].flown and name not in answers)]
     cases = {name: part_case(parts[name], stress[name]) for name in wanted}
     built = time.perf_counter()
-    result = compute(study, config, list(cases.values()), robot, trajectory)
+    before = flown.computed if flown is not None else None
+    result = compute(study, config, list(cases.values()), done.robot, trajectory, before)
     documents = {name: known[name] for name in parts if name in known}
     for name, analysis in zip(wanted, result.parts, strict=True):
-        documents[name] = part_document(masses[name], analysis)
+        documents[name] = part_document(done.masses[name], analysis)
         if stress[name].flown:
             answers[name] = _ANSWERS.put(keys[name], list(analysis.responses))
         if cache is not None and name not in known:
             cache.put(keys[name], documents[name])
     documents = {name: documents[name] for name in parts}
     if answers and result.flights and all(flight.completed for flight in result.flights):
-        documents |= _flown_strength(config, parts, robot, result, documents, answers)
-    document = {"parts": documents, **flight_numbers(config, parts, robot, result, trajectory)}
+        documents |= _flown_strength(config, parts, done.robot, result, documents, answers)
+    numbers = flown.numbers if flown is not None else None
+    document = {"parts": documents, **(numbers or flight_numbers(config, parts, done.robot, result, trajectory))}
     verdict = judge(config, {"design": design.to_dict(), **document}, study.functions)
     evaluation = Evaluation(
         design=design.to_dict(),
@@ -163,10 +217,17 @@ def _evaluate(
         violations=verdict.violations,
         margins=verdict.margins,
         **document,
-        seconds={"geometry": built - start, **result.seconds, "total": time.perf_counter() - start},
+        seconds=_seconds(start, built, result, flown),
         provenance=provenance(study),
     )
     return evaluation, result
+
+
+def _seconds(start: float, built: float, result: Computed, flown: Flown | None) -> dict[str, float]:
+    """Times [s] by stage and in all, those of what was done before included."""
+    earlier, making = (flown.seconds, flown.made.seconds) if flown is not None else (0.0, 0.0)
+    total = earlier + time.perf_counter() - start
+    return {"geometry": making + built - start, **result.seconds, "total": total}
 
 
 def _known_documents(keys: Mapping[str, str], cache: PartCache | None) -> dict[str, dict[str, Any]]:
@@ -209,8 +270,8 @@ def flight_numbers(
     if not flights:
         return {"flight": {}, "objective_families": {}}
     document = flown_document(config, flights, result.seconds["flight"], trajectory)
-    clearances = _clearances(config, parts, robot, flights)
-    return document | ({"flight": document["flight"] | {"interference": clearances}} if clearances else {})
+    found = clearances(config, parts, robot, flights)
+    return document | ({"flight": document["flight"] | {"interference": found}} if found else {})
 
 
 def flown_document(
@@ -308,31 +369,3 @@ def _part_key(study: StudyData, part: Part, settings: StressSettings) -> str:
 
 def _mass(document: Mapping[str, Any]) -> Inertial:
     return Inertial(document["mass"], np.array(document["com"]), np.array(document["inertia"]))
-
-
-def _clearances(
-    config: StudyConfig, parts: Mapping[str, Part], robot: RobotDescription, flights: Sequence[dyn.FlightLog]
-) -> dict[str, Any]:
-    """Clearances over the flown postures of all flights; empty if the study does not ask for them.
-
-    Of a robot that did not fly at all, having no hover, those of the study's initial posture.
-    """
-    if config.interference is None:
-        return {}
-    history = np.concatenate([flight.joint_positions for flight in flights])
-    times = np.concatenate([flight.time for flight in flights])
-    finite = np.isfinite(history).all(axis=1)
-    history, times = history[finite], times[finite]
-    if not len(history):
-        initial = [angle for group in config.flown.joint_groups for angle in group.initial_rad]
-        history, times = np.array([initial]), np.zeros(1)
-    slices = config.interference.slices
-    placed = {part.name: (part.placements, part_pieces(parts[part.name], slices)) for part in config.parts}
-    return flown_interference(robot, config.interference, placed, joint_names(config.flown), history, times)
-
-
-@functools.lru_cache(maxsize=64)
-def part_pieces(part: Part, slices: int) -> tuple[Matrix, ...]:
-    """Convex pieces of a part, part axes [m]; kept, since designs share parts."""
-    surface = part.surface(CLEARANCE_SEGMENTS)
-    return tuple(convex_pieces(surface.points, surface.triangles, slices))

@@ -10,7 +10,7 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from codesign.chain.chain import build_parts, build_robot, compute, evaluate, flight_numbers, flown_document
+from codesign.chain.chain import Flown, compute, evaluate, flight_numbers, flown_document, make
 from codesign.chain.judge import FLIGHT_MISSED, Verdict, judge, limits
 from codesign.chain.provenance import provenance
 from codesign.errors import CodesignError
@@ -42,10 +42,10 @@ def evaluate_lazily(
     if not can_wait(config):
         return evaluate(study, design, cache=cache)
     try:
-        early = _flown_only(study, design, config, rivals)
+        early, flown = _flown_only(study, design, config, rivals, cache)
     except CodesignError as error:
         return Evaluation.failure(design.to_dict(), f"{type(error).__name__}: {error}", provenance(study))
-    return early or evaluate(study, design, cache=cache)
+    return early or evaluate(study, design, cache=cache, flown=flown)
 
 
 def can_wait(config: StudyConfig) -> bool:
@@ -72,21 +72,18 @@ def _massive(wanted: Quantity) -> bool:
     return ".".join(path.split(".")[2:]) == MASSES and "parts." in path
 
 
-def _flown_only(study: StudyData, design: Design, config: StudyConfig, rivals: Sequence[Rival]) -> Evaluation | None:
-    """The evaluation, if the flight decides it."""
+def _flown_only(
+    study: StudyData, design: Design, config: StudyConfig, rivals: Sequence[Rival], cache: PartCache | None
+) -> tuple[Evaluation | None, Flown]:
+    """The evaluation, if the flight decides it; and what was done for it."""
     start = time.perf_counter()
-    parts = build_parts(study, design, config)
-    built = time.perf_counter()
-    robot = build_robot(study, design)
-    result = compute(study, config, [], robot, None)
+    made = make(study, design, config, cache)
+    result = compute(study, config, [], made.robot, None)
     if not result.flights:
-        return None
-    masses = {name: {MASSES: float(part.mass_properties().mass)} for name, part in parts.items()}
-    flown = (
-        flight_numbers(config, parts, robot, result)
-        if _measures_early(config)
-        else flown_document(config, result.flights, result.seconds["flight"])
-    )
+        return None, Flown(made, result, time.perf_counter() - start)
+    masses = {name: {MASSES: float(mass.mass)} for name, mass in made.masses.items()}
+    clearances = flight_numbers(config, made.parts, made.robot, result) if _measures_early(config) else None
+    flown = clearances or flown_document(config, result.flights, result.seconds["flight"])
     document = {"parts": masses, **flown}
     chosen = [
         limit for limit in limits(config) if _early(limit.quantity, config) or limit.quantity.key == FLIGHT_MISSED
@@ -94,10 +91,11 @@ def _flown_only(study: StudyData, design: Design, config: StudyConfig, rivals: S
     verdict = judge(config, {"design": design.to_dict(), **document}, study.functions, chosen)
     rival = None if verdict.status == "infeasible" else rival_of(rivals, verdict.objectives.values())
     if verdict.status != "infeasible" and rival is None:
-        return None
-    seconds = {"geometry": built - start, **result.seconds, "total": time.perf_counter() - start}
+        return None, Flown(made, result, time.perf_counter() - start, clearances)
+    seconds = {"geometry": made.seconds, **result.seconds, "total": time.perf_counter() - start}
     missing = STRENGTH_NOT_COMPUTED if _measures_early(config) else NOT_COMPUTED
-    return _stopped(study, design, verdict, rival, document | {"parts": {}}, seconds, missing)
+    stopped = _stopped(study, design, verdict, rival, document | {"parts": {}}, seconds, missing)
+    return stopped, Flown(made, result, seconds["total"], clearances)
 
 
 def _stopped(

@@ -13,7 +13,8 @@ import manifold3d
 import numpy as np
 
 from codesign import dynamics as dyn
-from codesign.chain.chain import build_robot, part_pieces
+from codesign.chain.chain import build_robot
+from codesign.chain.clearances import part_pieces
 from codesign.chain.flight import find_trajectory, flight_settings
 from codesign.cli.export_formats import LOG, ROBOT
 from codesign.files import write_text

@@ -1,10 +1,13 @@
 """Lazy evaluations: what stops early says so and has no number; what does not stop is the whole evaluation."""
 
 import dataclasses
+from types import SimpleNamespace
 
 import msgspec
 import pytest
 
+from codesign import _core
+from codesign.chain import chain, clearances
 from codesign.chain.lazy import NOT_COMPUTED, STRENGTH_NOT_COMPUTED, can_wait
 from codesign.chain.study import load_study
 from codesign.study.config import ExecutionConfig, LimitConfig, ObjectivesConfig
@@ -31,6 +34,22 @@ def test_a_design_that_can_enter_the_front_is_evaluated_whole(whole):
     values = list(whole.objectives.values())
     beside = (values[0] * 0.9, values[1] * 1.1, values[2])
     assert numbers(STUDY.evaluate_lazily(DESIGN, [(3, beside)])) == numbers(whole)
+
+
+@pytest.mark.parametrize("study", [STUDY, None], ids=["flight first", "clearances too"])
+def test_what_was_flown_and_measured_first_is_not_done_again(whole, monkeypatch, study):
+    calls = []
+
+    def counted(function):
+        return lambda *given: calls.append(function.__name__) or function(*given)
+
+    monkeypatch.setattr(chain, "_core", SimpleNamespace(**vars(_core)))
+    monkeypatch.setattr(chain._core, "evaluate", counted(_core.evaluate))
+    monkeypatch.setattr(clearances, "flown_interference", counted(clearances.flown_interference))
+    found = (study or strength_last(STUDY)).evaluate_lazily(DESIGN, [])
+    assert sorted(calls) == ["evaluate", "flown_interference"]
+    assert numbers(found) == numbers(whole)
+    assert found.seconds["total"] >= sum(found.seconds[key] for key in ("geometry", "fem", "flight"))
 
 
 def test_a_design_that_cannot_is_flown_only(whole):
