@@ -35,7 +35,8 @@ def edited(tmp_path, template, *changes):
 
 def test_shares_are_those_of_the_histories(hexarotor):
     flight = hexarotor.config.flight
-    model = dyn.load_urdf(hexarotor.build_robot(hexarotor.baseline), joints=joint_names(flight))
+    tilted = {**hexarotor.baseline, "tilt": 32.5}  # pushes sideways without coming to its limits
+    model = dyn.load_urdf(hexarotor.build_robot(tilted), joints=joint_names(flight))
     log = dyn.simulate_flight(model, flight_settings(flight, find_trajectory(hexarotor.config, "box")))
     shares = saturation(log, flight)
     assert shares["thrust_rate_share"] == pytest.approx(np.abs(log.thrust_rate_command).mean() / 60.0, rel=1e-12)
