@@ -1,9 +1,10 @@
 """docs/figures/hexarotor.png, the picture at the head of the README: designs, their part, and a flight.
 
-python scripts/readme_picture.py
+codesign optimize --study hexarotor --algorithm surrogate --evaluations 60 --seed 1 --original --out RUN
+python scripts/readme_picture.py RUN
 """
 
-from itertools import product
+import sys
 from pathlib import Path
 
 import matplotlib as mpl
@@ -16,11 +17,10 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from codesign import dynamics as dyn
 from codesign.chain.flight import find_trajectory, flight_settings
 from codesign.chain.study import Study, load_study
-from codesign.problem.pareto import non_dominated
+from codesign.storage.runs import load_run
 
 OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "hexarotor.png"
-LENGTHS, TILTS, TUBES = (160, 200, 240, 280), (10, 15, 20, 25, 30, 35, 40), ("10x2", "16x2", "20x2")
-TUBE_COLORS = dict(zip(TUBES, ("#1f77b4", "#ff7f0e", "#2ca02c"), strict=True))
+TUBE_COLORS = {"10x2": "#1f77b4", "12x2": "#9467bd", "16x2": "#ff7f0e", "20x2": "#2ca02c"}
 
 
 def flown(study: Study, design: dict[str, float | str]) -> dyn.FlightLog:
@@ -30,17 +30,25 @@ def flown(study: Study, design: dict[str, float | str]) -> dyn.FlightLog:
     return dyn.simulate_flight(dyn.load_urdf(study.build_robot(design), joints=[]), settings)
 
 
-def draw_front(axes: plt.Axes, study: Study) -> None:
-    """Momentum error over thrust of a coarse grid; the best compromises filled."""
-    designs = [{"length": a, "tilt": b, "tube": c} for a, b, c in product(LENGTHS, TILTS, TUBES)]
-    logs = [flown(study, design) for design in designs]
-    points = np.array([[log.rms.thrust, log.rms.momentum] for log in logs])
-    best = np.asarray(non_dominated(points))
+def draw_front(axes: plt.Axes, folder: str) -> None:
+    """Tracking error over power of a run's feasible designs; the best compromises, in mass too, filled."""
+    run = load_run(folder)
+    best = [record.evaluation.design for record in run.front]
     for tube, color in TUBE_COLORS.items():
-        mine = np.array([design["tube"] == tube for design in designs])
-        axes.scatter(*points[mine & ~best].T, s=14, facecolors="none", edgecolors=color)
-        axes.scatter(*points[mine & best].T, s=26, color=color, label=f"tube {tube}")
-    axes.set(xlabel="mean thrust [N]", ylabel="momentum error", title="designs, the best ones filled")
+        for filled in (False, True):
+            points = [
+                (evaluation.objectives["power:power_in_watts"], 1e3 * evaluation.objectives["tracking"])
+                for evaluation in run.evaluations
+                if evaluation.status == "feasible"
+                and evaluation.design["tube"] == tube
+                and (evaluation.design in best) is filled
+            ]
+            if points:
+                hollow = {"facecolors": "none", "edgecolors": color}
+                style = {"color": color, "label": f"tube {tube}"} if filled else hollow
+                axes.scatter(*np.array(points).T, s=26 if filled else 14, **style)
+    axes.set(xlabel="power [W]", ylabel="tracking error [mm]", title="designs, the best ones filled")
+    axes.set_yscale("log")
     axes.legend(frameon=False)
 
 
@@ -73,7 +81,7 @@ def draw_flight(axes: plt.Axes, study: Study) -> None:
         base[:3, :3], base[:3, 3] = log.base_rotation[k], log.base_position[k]
         for jet, frame in enumerate(frames):
             pose = dyn.frame_pose(robot, base, [], frame)
-            tip = pose[:3, 3] + 0.06 * log.thrust[k, jet] * pose[:3, 2]
+            tip = pose[:3, 3] + 0.1 * log.thrust[k, jet] * pose[:3, 2]
             axes.plot(*np.array([base[:3, 3], pose[:3, 3]]).T, color="#1f4e79", lw=1.4)
             axes.plot(*np.array([pose[:3, 3], tip]).T, color="#d95f02", lw=1.1)
     axes.set(title="its flight, with thrusts")
@@ -86,7 +94,7 @@ def main() -> None:
     """Draws and writes the picture."""
     study = load_study("hexarotor")
     figure = plt.figure(figsize=(12.0, 3.9), dpi=110, layout="constrained")
-    draw_front(figure.add_subplot(1, 3, 1), study)
+    draw_front(figure.add_subplot(1, 3, 1), sys.argv[1])
     draw_part(figure.add_subplot(1, 3, 2, projection="3d"), study)
     draw_flight(figure.add_subplot(1, 3, 3, projection="3d"), study)
     figure.savefig(OUT)

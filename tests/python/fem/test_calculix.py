@@ -43,7 +43,9 @@ def mesh() -> fem.TetMesh:
 @pytest.fixture(scope="module")
 def solved(mesh, tmp_path_factory):
     if shutil.which("ccx") is None:
-        pytest.fail("ccx is missing: install the Debian packages of apt-packages-test.txt")
+        pytest.fail(
+            "ccx is missing: install the Debian packages of apt-packages-test.txt (Debian 13 has no calculix-ccx)"
+        )
     folder = tmp_path_factory.mktemp("ccx")
     write_inp(folder / "bar.inp", mesh, STEEL, SUPPORTS, CASES, "a bar")
     run = subprocess.run(["ccx", "bar"], cwd=folder, capture_output=True, text=True, check=False)
