@@ -7,6 +7,7 @@
 
 #include "bindings/bind_flight_settings.hpp"
 #include "bindings/bindings.hpp"
+#include "bindings/own_plant.hpp"
 #include "bindings/py_model.hpp"
 #include "dynamics/box_qp.hpp"
 #include "dynamics/flight/flight.hpp"
@@ -267,17 +268,25 @@ void bind_flight(py::module_& m) {
   bind_box_qp(m);
   bind_flight_settings(m);
   bind_log(m);
+  bind_own_plant(m);
   m.def(
       "simulate_flight",
-      [](const PyModel& model, const FlightSettings& settings) {
+      [](const PyModel& model, const FlightSettings& settings,
+         const std::optional<PythonPlant>& plant) {
         const FlightSettings copy = settings;  // Python may change its own while the GIL is free
+        const OwnPlant own = plant ? own_plant(*plant) : OwnPlant();
         const py::gil_scoped_release release;
-        return simulate_flight(model, copy);
+        return simulate_flight(model, copy, own);
       },
-      py::arg("model"), py::arg("settings"),
+      py::arg("model"), py::arg("settings"), py::arg("plant") = py::none(),
       "Fly the model along the settings' trajectory. The model must have been loaded with "
-      "joints=settings.joints. A lost flight is a status of the log. Raises ValueError if model "
-      "and settings do not fit each other.");
+      "joints=settings.joints. A lost flight is a status of the log. plant: a robot of your own, "
+      "another simulator say, called once per period of the torque loop with the inputs held over "
+      "it, the period [s] and the state; it returns the state at its end. Controllers and jets "
+      "stay "
+      "the flight's; masses, drag, friction and fuel are the plant's own, and what it raises ends "
+      "the flight. Raises ValueError if model and settings do not fit each other, or for a plant "
+      "under the predictive controller.");
   m.def(
       "fitted_settings",
       [](const PyModel& model, const FlightSettings& settings) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "dynamics/disturbance.hpp"
 #include "dynamics/drives.hpp"
@@ -28,11 +29,13 @@ namespace {
 // Everything the loop carries from step to step. The member functions are the items of one step.
 class Flight {
  public:
-  Flight(const Model& model, const FlightSettings& settings, const FlightStart& start);
+  Flight(const Model& model, const FlightSettings& settings, const FlightStart& start,
+         const OwnPlant& own_plant);
   FlightLog run();
 
  private:
   FailureReason advance_plant(int k);
+  bool move(bool held);
   void advance_jets(int k);
   bool update_dynamics();
   FailureReason control(int k);
@@ -50,6 +53,7 @@ class Flight {
   RobotTerms terms_;
   JointSpace joint_space_;
   Plant plant_;
+  const OwnPlant& own_plant_;  // instead, unless empty
   Drives drives_;
   PlantInputs inputs_;
   Gusts gusts_;
@@ -77,7 +81,8 @@ class Flight {
   Stopwatch watch_;
 };
 
-Flight::Flight(const Model& model, const FlightSettings& settings, const FlightStart& start)
+Flight::Flight(const Model& model, const FlightSettings& settings, const FlightStart& start,
+               const OwnPlant& own_plant)
     : model_(model),
       settings_(settings),
       torque_period_(settings.step / settings.torque_updates),
@@ -86,6 +91,7 @@ Flight::Flight(const Model& model, const FlightSettings& settings, const FlightS
       terms_(model, settings.actuators, settings.rotor_inertia),
       joint_space_(model.joint_count()),
       plant_(model, settings),
+      own_plant_(own_plant),
       drives_(settings),
       gusts_(settings),
       heights_(model, settings),
@@ -133,11 +139,19 @@ FailureReason Flight::advance_plant(int k) {
       if (reason != FailureReason::kNotFailed) return reason;
     }
     inputs_.base_force = gusts_.at(k > 0 ? start + (i + 0.5) * torque_period_ : start);
-    const bool moved = held ? plant_.advance(inputs_, state_)
-                            : plant_.advance(terms_, joint_space_, inputs_, state_);
-    if (!moved) return FailureReason::kSingularMass;
+    if (!move(held)) return FailureReason::kSingularMass;
   }
   return plant_.fuel_left() < 0.0 ? FailureReason::kNoFuel : FailureReason::kNotFailed;
+}
+
+// By one period of the torque loop. Held: terms_ are of an earlier state.
+bool Flight::move(bool held) {
+  if (own_plant_) {
+    own_plant_(inputs_, torque_period_, state_);
+    return true;
+  }
+  return held ? plant_.advance(inputs_, state_)
+              : plant_.advance(terms_, joint_space_, inputs_, state_);
 }
 
 // Item 2: the thrusts move on under the commands of the last step.
@@ -315,12 +329,20 @@ void summarize(const Model& model, const FlightSettings& settings, FlightLog& lo
 
 }  // namespace
 
-FlightLog simulate_flight(const Model& model, const FlightSettings& asked) {
+FlightLog simulate_flight(const Model& model, const FlightSettings& settings) {
+  return simulate_flight(model, settings, OwnPlant());
+}
+
+FlightLog simulate_flight(const Model& model, const FlightSettings& asked, const OwnPlant& plant) {
+  const bool predictive = asked.controller == Controller::kPredictive;
+  if (predictive && plant) {
+    throw std::invalid_argument(
+        "simulate_flight: a plant of your own flies under the momentum controller only");
+  }
   const FlightSettings settings = fitted(model, asked);
   const FlightStart start = flight_start(model, settings);
-  FlightLog log = settings.controller == Controller::kPredictive
-                      ? simulate_predictive_flight(model, settings, start)
-                      : Flight(model, settings, start).run();
+  FlightLog log = predictive ? simulate_predictive_flight(model, settings, start)
+                             : Flight(model, settings, start, plant).run();
   log.measures.hover_margin = hover_margin(settings.actuators, start.thrusts);
   if (log.samples < log.time.rows()) truncate(log);
   summarize(model, settings, log);

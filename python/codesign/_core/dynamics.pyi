@@ -39,6 +39,7 @@ __all__: list[str] = [
     "ObjectiveParts",
     "Path",
     "PathPoint",
+    "PlantInputs",
     "PredictionModel",
     "PredictionState",
     "PredictiveController",
@@ -50,6 +51,7 @@ __all__: list[str] = [
     "QpStatus",
     "RateIntegrator",
     "ReferenceSettings",
+    "RobotState",
     "ServoIntegrator",
     "ServoPlantSettings",
     "ServoSettings",
@@ -2604,6 +2606,72 @@ class FlightLog:
         (N, 3) force on the base's origin [N]
         """
 
+class RobotState:
+    """
+    Of a floating-base robot: base velocity is that of the base's origin, world axes, then its angular velocity, world axes.
+    """
+    def __init__(
+        self,
+        *,
+        base_rotation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"],
+        base_position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        joints: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> None:
+        """
+        base_rotation (3, 3), base_position (3,) [m], joints (n,) [rad or m], velocity (6 + n,) [m/s, rad/s].
+        """
+    @property
+    def base_position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) [m]
+        """
+    @property
+    def base_rotation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        (3, 3) from base to world axes
+        """
+    @property
+    def joints(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) [rad or m]
+        """
+    @property
+    def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (6 + n,) [m/s, rad/s]
+        """
+
+class PlantInputs:
+    """
+    What acts on the robot over one period, held.
+    """
+    @property
+    def base_force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) gusts, on the base's origin, world axes [N]
+        """
+    @property
+    def base_moment(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) on the base, world axes [N m]
+        """
+    @property
+    def com_force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) pulses, through the center of mass, world axes [N]
+        """
+    @property
+    def thrust(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (jets,) [N]
+        """
+    @property
+    def torque(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (joints,) [N m]
+        """
+
 class Trim:
     """
     A state in which a robot hovers, or how near one came to it.
@@ -3153,9 +3221,13 @@ def potential_energy(
     [J], zero with the center of mass at height 0 of the world.
     """
 
-def simulate_flight(model: Model, settings: FlightSettings) -> FlightLog:
+def simulate_flight(
+    model: Model,
+    settings: FlightSettings,
+    plant: collections.abc.Callable[[PlantInputs, float, RobotState], RobotState] | None = None,
+) -> FlightLog:
     """
-    Fly the model along the settings' trajectory. The model must have been loaded with joints=settings.joints. A lost flight is a status of the log. Raises ValueError if model and settings do not fit each other.
+    Fly the model along the settings' trajectory. The model must have been loaded with joints=settings.joints. A lost flight is a status of the log. plant: a robot of your own, another simulator say, called once per period of the torque loop with the inputs held over it, the period [s] and the state; it returns the state at its end. Controllers and jets stay the flight's; masses, drag, friction and fuel are the plant's own, and what it raises ends the flight. Raises ValueError if model and settings do not fit each other, or for a plant under the predictive controller.
     """
 
 def simulate_flights(

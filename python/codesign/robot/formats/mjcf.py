@@ -7,7 +7,6 @@ order of the nested bodies.
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -35,6 +34,7 @@ def mjcf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pa
     """MJCF of a free-floating robot with a site and an actuator for each jet and a motor for each joint.
 
     Bodies, joints and jets have the URDF's names; the site of a jet is JET_jet, a motor is named after its joint.
+    A drive's rotor is the joint's armature.
     Keyframe "start": the posture, thrusts and controls in which the flight of the settings begins.
 
     robot: its meshes with paths relative to where the text will stand (OBJ is read by most). ignored: pairs of links
@@ -49,7 +49,7 @@ def mjcf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pa
     base = ET.SubElement(ET.SubElement(root, "worldbody"), "body", name=robot.root_link)
     ET.SubElement(base, "freejoint", name="root")
     _refuse_bodies_without_mass(robot)
-    _Bodies(robot, settings.actuators, assets).fill(base, robot.root_link)
+    _Bodies(robot, settings, assets).fill(base, robot.root_link)
     actuators = ET.SubElement(root, "actuator")
     for jet in settings.actuators:
         _append_jet(actuators, robot, jet)
@@ -68,10 +68,12 @@ def mjcf_text(robot: RobotDescription, settings: dyn.FlightSettings, ignored: Pa
 class _Bodies:
     """Writes links as nested bodies; meshes become assets, each once."""
 
-    def __init__(self, robot: RobotDescription, jets: Sequence[dyn.Actuator], assets: ET.Element) -> None:
+    def __init__(self, robot: RobotDescription, settings: dyn.FlightSettings, assets: ET.Element) -> None:
         self.robot, self.assets = robot, assets
         self.children = child_joints(robot)
-        self.jets = {jet.frame for jet in jets}
+        self.jets = {jet.frame for jet in settings.actuators}
+        rotors = settings.rotor_inertia if len(settings.rotor_inertia) else np.zeros(len(settings.joints))
+        self.rotors = dict(zip(settings.joints, rotors, strict=True))
         self.colors = robot.material_colors()
         self.meshes: dict[tuple[str, str], str] = {}
 
@@ -88,7 +90,7 @@ class _Bodies:
             joint = self.robot.joint(name)
             body = ET.SubElement(element, "body", {"name": joint.child} | _placed(self.robot.joint_origin(name)))
             if joint.type in MOVING:
-                _append_joint(body, self.robot, name)
+                _append_joint(body, self.robot, name, self.rotors.get(name, 0.0))
             self.fill(body, joint.child)
 
     def _append_geom(self, element: ET.Element, shape: Shape, settings: dict[str, str]) -> None:
@@ -148,7 +150,7 @@ def _append_inertial(element: ET.Element, robot: RobotDescription, link: str) ->
     ET.SubElement(element, "inertial", numbers)
 
 
-def _append_joint(body: ET.Element, robot: RobotDescription, name: str) -> None:
+def _append_joint(body: ET.Element, robot: RobotDescription, name: str, rotor_inertia: float) -> None:
     joint = robot.joint(name)
     attributes = {
         "name": name,
@@ -163,6 +165,8 @@ def _append_joint(body: ET.Element, robot: RobotDescription, name: str) -> None:
             for key, value in (("damping", joint.dynamics.damping), ("frictionloss", joint.dynamics.friction))
             if value
         }
+    if rotor_inertia:
+        attributes["armature"] = number_text(rotor_inertia)
     ET.SubElement(body, "joint", attributes)
 
 
