@@ -2,12 +2,14 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
 
 from codesign.errors import ExecutionError
-from codesign.execution.pool import Limits, LocalPool, Outcome, StudyRef, Task
+from codesign.execution.pool import KEPT_MEMORY, Limits, LocalPool, Outcome, StudyRef, Task
 from fake_study import FakeStudy, study
 
 
@@ -45,6 +47,22 @@ def test_each_fault_is_one_failed_result_with_its_reason() -> None:
         assert reason in (outcome.evaluation.reason or "")
         assert outcome.evaluation.design == outcome.task.design
     assert [outcome.evaluation.status for outcome in outcomes[len(FAULTS) :]] == ["feasible"] * 4
+
+
+def test_workers_keep_the_memory_that_evaluations_free() -> None:
+    """With their settings, filling 64 MB for the second to tenth time faults no page in."""
+    code = (
+        "import resource\n"
+        "def faults():\n"
+        "    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt\n"
+        "    b'x' * 64_000_000\n"
+        "    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before\n"
+        "print(*(faults() for _ in range(10)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=KEPT_MEMORY | os.environ, capture_output=True, text=True, check=True
+    )
+    assert max(map(int, done.stdout.split()[1:])) < 100  # of 15 625 pages
 
 
 def test_hanging_evaluations_end_at_the_time_limit() -> None:
