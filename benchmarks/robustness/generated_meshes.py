@@ -4,11 +4,12 @@
     python benchmarks/robustness/generated_meshes.py --kind plates --parts 60 --out plates.jsonl
     python benchmarks/robustness/generated_meshes.py --kind series --out series.jsonl
     python benchmarks/robustness/generated_meshes.py --table generated.jsonl
+    python benchmarks/robustness/generated_meshes.py --seeds 106,191,207 --most 0 --out generated.jsonl
 
 Writes a line of JSON for each part as it goes and skips what the file has already. A part is clamped at x = 0 and
 pushed down on its top faces. After all parts have their mesh, displacements are compared with those of refined meshes,
-the smallest first: all edge lengths times 0.6, which is about 4.6 times the elements; at most about `--most` of them,
-so that parts with large meshes have no comparison.
+the smallest first: all edge lengths times 0.6, or less until there are at least four times the elements; at most about
+`--most` of them, so that parts with large meshes have no comparison. `--seeds` runs only these, again if known.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,7 @@ from codesign.errors import CodesignError
 
 STEEL = fem.Material("steel", 210e9, 0.3, 250e6, 7850.0)
 FINER = 0.6  # edge lengths of the refined mesh, relative
+TIMES = 4.0  # its elements, at least
 Part = Callable[[], GeneratedPart]
 Line = dict[str, Any]
 
@@ -88,7 +90,7 @@ def displacement(mesh: fem.TetMesh) -> float:
 def examine(part: GeneratedPart) -> Line:
     """What a part is, and what its mesh is like."""
     surface = part.surface()
-    line: Line = {"name": part.name, "wall_mm": part.wall, "error": None}
+    line: Line = {"name": part.name, "wall_mm": part.wall, "error": None, "refined": None}
     start = time.process_time()
     try:
         mesh = fem.tetrahedralize(surface)
@@ -109,17 +111,32 @@ def examine(part: GeneratedPart) -> Line:
     }
 
 
+def refined_mesh(surface: fem.SurfaceMesh, size: fem.SizeField, tetrahedra: int) -> fem.TetMesh:
+    """With at least TIMES as many elements."""
+    scale = FINER
+    while len((mesh := fem.tetrahedralize(surface, size.scaled(scale))).tets) < TIMES * tetrahedra:
+        scale *= 0.97 * (len(mesh.tets) / tetrahedra / TIMES) ** (1.0 / 3.0)
+    return mesh
+
+
 def compare(part: GeneratedPart) -> Line:
-    """Displacements at default settings and with all edge lengths times FINER."""
+    """Displacements at default settings and with the refined mesh."""
     surface = part.surface()
     size = fem.default_size(surface)
-    line: Line = {"displacement_mm": 1e3 * displacement(fem.tetrahedralize(surface, size))}
+    coarse = fem.tetrahedralize(surface, size)
+    line: Line = {"tetrahedra": len(coarse.tets), "displacement_mm": 1e3 * displacement(coarse)}
     try:
-        mesh = fem.tetrahedralize(surface, size.scaled(FINER))
+        mesh = refined_mesh(surface, size, len(coarse.tets))
         refined = {"tetrahedra": len(mesh.tets), "displacement_mm": 1e3 * displacement(mesh)}
     except CodesignError as error:
         refined = {"error": str(error)}
     return line | {"refined": refined}
+
+
+def is_compared(line: Line) -> bool:
+    """Whether a refined mesh has enough elements, or was refused."""
+    refined = line["refined"]
+    return refined is not None and refined.get("tetrahedra", np.inf) >= TIMES * line["tetrahedra"]
 
 
 def differences(lines: list[Line]) -> dict[str, float]:
@@ -127,7 +144,7 @@ def differences(lines: list[Line]) -> dict[str, float]:
     return {
         line["part"]: line["displacement_mm"] / line["refined"]["displacement_mm"] - 1.0
         for line in lines
-        if "displacement_mm" in (line.get("refined") or {})
+        if "displacement_mm" in (line["refined"] or {}) and is_compared(line)
     }
 
 
@@ -183,27 +200,27 @@ def read_lines(file: Path) -> dict[str, Line]:
     return lines
 
 
-def parts_of(kind: str, first: int, count: int) -> dict[str, Part]:
+def parts_of(kind: str, seeds: Iterable[int]) -> dict[str, Part]:
     """The parts of a kind by their name in the file."""
     if kind == "series":
         return {part.name: lambda part=part: part for part in series()}  # type: ignore[misc]
     make = {"generated": generate, "plates": thin_plate}[kind]
-    return {f"seed {seed}": lambda seed=seed: make(seed) for seed in range(first, first + count)}  # type: ignore[misc]
+    return {f"seed {seed}": lambda seed=seed: make(seed) for seed in seeds}  # type: ignore[misc]
 
 
-def run(parts: dict[str, Part], out: Path, most: int) -> None:
-    """Meshes of the parts that the file lacks, then refined ones, the smallest first."""
+def run(parts: dict[str, Part], out: Path, most: int, again: bool) -> None:
+    """Meshes of the parts that the file lacks, or of all `again`, then refined ones, the smallest first."""
 
     def write(part: str, line: Line) -> None:
         with out.open("a") as file:
             file.write(json.dumps({"part": part} | line) + "\n")
 
     for part, make in parts.items():
-        if part not in read_lines(out):
+        if again or part not in read_lines(out):
             write(part, examine(make()))
     meshed = [line for part, line in read_lines(out).items() if part in parts and line["error"] is None]
     for line in sorted(meshed, key=lambda line: line["tetrahedra"]):
-        if line["refined"] is None and line["tetrahedra"] / FINER**3 <= most:
+        if not is_compared(line) and line["tetrahedra"] / FINER**3 <= most:
             write(line["part"], compare(parts[line["part"]]()))
 
 
@@ -212,13 +229,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kind", choices=("generated", "plates", "series"), default="generated")
     parser.add_argument("--parts", type=int, default=300)
-    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--seeds", help="numbers with commas: these instead, again if known")
     parser.add_argument("--most", type=int, default=220_000, help="elements of a refined mesh that is solved")
     parser.add_argument("--out", type=Path, default=Path("generated.jsonl"))
     parser.add_argument("--table", type=Path)
     options = parser.parse_args()
     if options.table is None:
-        run(parts_of(options.kind, options.first, options.parts), options.out, options.most)
+        seeds = map(int, options.seeds.split(",")) if options.seeds else range(options.parts)
+        run(parts_of(options.kind, seeds), options.out, options.most, again=options.seeds is not None)
     print(summary(list(read_lines(options.table or options.out).values())))
 
 

@@ -76,6 +76,12 @@ def test_a_constraint_on_any_number_takes_one_line_of_the_study(config):
     assert {limit.quantity.key for limit in limits(strict)} >= {"max_torque", "mass", "safety_factor"}
 
 
+@pytest.mark.parametrize(("wanted", "violation"), [(0.8, 0.25), (1.0, 0.0), (1.25, 0.2)])
+def test_equal_limits_are_an_equality(config, wanted, violation):
+    verdict = judge(asked(config, limits={"mass": LimitConfig(minimum=wanted, maximum=wanted)}), DOCUMENT, {})
+    assert verdict.violations["mass"] == pytest.approx(violation)
+
+
 def test_the_reason_names_every_part_that_misses_a_limit_of_all(config):
     document = DOCUMENT | {"parts": {"rod": PARTS["rod"] | {"safety_factor": 9.5}, "plate": PARTS["plate"]}}
     verdict = judge(asked(config), document, {})
