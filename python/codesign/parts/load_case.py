@@ -123,9 +123,9 @@ class StressSettings:
     accuracy: "optimization" or "fine" mesh; "converged": the fine one, refined around the peak until its estimated
     error and its change are within the tolerance. exclusion, exclusion_distance [m]: where the peak stress is not read,
     as in `fem.StaticSystem`. edge_length: [m] of the elements of a part without its own size field; None: from its mean
-    wall thickness, about MOST_ELEMENTS at the most; "fine" ones are shorter in proportion. tolerance: wanted relative error of the peak stress. modes,
-    buckling: how many natural frequencies and buckling factors are wanted. memory_limit: [bytes] for the matrices and
-    factors of one analysis; it decides between factor and iteration.
+    wall thickness, about MOST_ELEMENTS at the most; "fine" ones are shorter in proportion. tolerance: wanted relative
+    error of the peak stress. modes, buckling: how many natural frequencies and buckling factors are wanted.
+    memory_limit: [bytes] for the matrices and factors of one analysis; it decides between factor and iteration.
     """
 
     material: fem.Material

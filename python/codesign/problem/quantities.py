@@ -167,6 +167,13 @@ _TABLE = (
     ),
 )
 QUANTITIES = {quantity.key: quantity for quantity in _TABLE}
+OF_A_PART = {
+    "mass": "mass",
+    "safety_factor": "safety factor",
+    "first_frequency": "first natural frequency",
+    "buckling_factor": "buckling factor",
+    "max_displacement": "largest displacement",
+}
 FAMILY = ("momentum", "joint_velocity", "thrust")  # members of each objective family
 UNITLESS_IN = {"script": ("momentum", "joint_velocity"), "paper": ("momentum", "joint_velocity")}
 
@@ -185,11 +192,22 @@ def quantity(key: str, family: str = "rms") -> Quantity:
     if key.startswith(MINUS):
         positive = quantity(key[1:], family)
         return replace(positive, key=key, label=f"−{positive.label}", meaning=f"Maximized. {positive.meaning}", path="")
-    known = QUANTITIES.get(key, Quantity(key, words(key.rpartition(":")[2]), path=key))
+    known = QUANTITIES.get(key) or _of_a_part(key) or Quantity(key, words(key.rpartition(":")[2]), path=key)
     if key in FAMILY and family != "rms":
         unit = "" if key in UNITLESS_IN.get(family, ()) else known.unit
         return replace(known, unit=unit, meaning=known.meaning if key == "thrust" else "")
     return known
+
+
+def _of_a_part(key: str) -> Quantity | None:
+    """What is known of a number that the table has of all parts: `parts.arm.cases.landing.safety_factor`."""
+    found = re.fullmatch(r"parts\.([^.*]+)(?:\.cases\.([^.*]+))?\.(\w+)", key)
+    if found is None or found[3] not in OF_A_PART:
+        return None
+    case = f", load case {found[2].replace('_', ' ')}" if found[2] else ""
+    of_all = QUANTITIES[found[3]]
+    label = f"{words(found[1])}{case}: {OF_A_PART[found[3]]}"
+    return Quantity(key, label, of_all.unit, factor=of_all.factor, path=key)
 
 
 def read(document: Mapping[str, Any], path: str) -> float | None:

@@ -89,6 +89,15 @@ def test_the_reason_names_every_part_that_misses_a_limit_of_all(config):
     assert verdict.violations["safety_factor"] == pytest.approx(0.05)
 
 
+def test_numbers_of_one_part_have_its_name_and_the_unit_of_all():
+    assert quantity("parts.arm.mass").title == "Arm: mass (kg)"
+    assert quantity("parts.arm.cases.hard_landing.safety_factor").title == "Arm, load case hard landing: safety factor"
+    assert quantity("-parts.left_arm.first_frequency").title == "−Left arm: first natural frequency (Hz)"
+    assert quantity("parts.arm.max_displacement").factor == 1000.0
+    assert quantity("parts.arm.work").title == "Parts: arm: work"
+    assert quantity("sum(parts.*.mass)").unit == ""
+
+
 def test_own_functions_of_an_evaluation(tmp_path):
     new_study(tmp_path / "study")
     (tmp_path / "study" / "costs.py").write_text(
