@@ -5,13 +5,7 @@
 #include <cstring>
 #include <utility>
 
-// Compiled twice and picked when the library loads: for AVX2, and for what every machine has. AVX2
-// alone has no fused multiply-add, so both round alike.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define CODESIGN_BOTH_WIDTHS __attribute__((target_clones("avx2", "default")))
-#else
-#define CODESIGN_BOTH_WIDTHS
-#endif
+#include "dynamics/both_widths.hpp"
 
 namespace codesign::dynamics {
 

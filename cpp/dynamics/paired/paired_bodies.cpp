@@ -6,6 +6,7 @@
 #include <cassert>
 #include <tuple>
 
+#include "dynamics/both_widths.hpp"
 #include "dynamics/paired/lane_access.hpp"
 
 namespace codesign::dynamics {
@@ -154,6 +155,7 @@ void PairedBodies::move(const Matrix3d& world_R_base,
   }
 }
 
+CODESIGN_BOTH_WIDTHS
 void PairedBodies::move_row(Row& row, const double* joints, const double* rates) {
   const Motion& first = rows_[static_cast<std::size_t>(row.parent[0].row)].motion;
   const Motion& second = rows_[static_cast<std::size_t>(row.parent[1].row)].motion;
@@ -188,6 +190,7 @@ void PairedBodies::move_row(Row& row, const double* joints, const double* rates)
 }
 
 // The body alone: its own inertia and the wrench that ν̇ = 0 takes.
+CODESIGN_BOTH_WIDTHS
 void PairedBodies::start_row(Row& row) {
   const Motion& m = row.motion;
   Articulated& body = row.articulated;
@@ -207,6 +210,7 @@ void PairedBodies::start_row(Row& row) {
 }
 
 // Removes the motion that the joints leave free, and hands the rest to the parents.
+CODESIGN_BOTH_WIDTHS
 void PairedBodies::hand_down(Row& row, const double* tau) {
   const Articulated& a = row.articulated;
   const LaneVector& axis = row.motion.R.c;
@@ -287,6 +291,7 @@ void PairedBodies::accelerate_base(Eigen::Ref<Eigen::VectorXd> nu_dot) {
   }
 }
 
+CODESIGN_BOTH_WIDTHS
 void PairedBodies::generalized_forces(Eigen::Ref<Eigen::VectorXd> forces) {
   for (std::size_t i = rows_.size() - 1; i > 0; --i) {
     const Row& row = rows_[i];
@@ -308,6 +313,7 @@ void PairedBodies::generalized_forces(Eigen::Ref<Eigen::VectorXd> forces) {
   forces.segment<3>(3) = -of_lane(rows_[0].articulated.moment, 0);
 }
 
+CODESIGN_BOTH_WIDTHS
 bool PairedBodies::accelerate(const Eigen::Ref<const Eigen::VectorXd>& tau,
                               Eigen::Ref<Eigen::VectorXd> nu_dot) {
   for (std::size_t i = rows_.size() - 1; i > 0; --i) hand_down(rows_[i], tau.data());
