@@ -28,7 +28,7 @@ help:
 	@echo 'make setup  only the set-up: Debian packages, $(VENV), build'
 	@echo 'make check  format, lint, types, stubs, layering (part of make test)'
 	@echo 'make test-lowest  the main jobs with the lowest versions of all packages that pyproject.toml allows'
-	@echo 'make test-consumers  exported robots in Drake and USD, parts of build123d, searches of numba (700 MB the first time)'
+	@echo 'make test-consumers  exported robots in Drake, Newton and USD, parts of build123d, searches of numba (700 MB the first time)'
 	@echo 'make coverage  the tests, with the share of the lines of Python and of the C++ libraries that they reach'
 	@echo 'make lock   write the installed versions into constraints.txt, which the set-up uses'
 	@echo 'make stubs  regenerate python/codesign/_core/*.pyi'

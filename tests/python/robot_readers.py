@@ -16,7 +16,8 @@ from exported_robots import Exported
 class Reading:
     """A robot in a posture: mass [kg], com (3,) [m], inertia (3, 3) about it, link -> (4, 4), joint -> gravity torque.
 
-    World axes. Torques are those that hold the joint against gravity [N m]. contacts: of its shapes; None: not known.
+    World axes. Torques are those that hold the joint against gravity [N m]; none where the reader has no words for
+    them. contacts: of its shapes; None: not known.
     """
 
     mass: float
@@ -170,6 +171,46 @@ def drake(exported: Exported, file: str = "robot.urdf") -> Reader:
     return read
 
 
+def newton(exported: Exported, file: str = "robot.urdf") -> Reader:
+    """The URDF or MJCF in Newton, on the CPU. Single precision; links without mass stay bodies of their own."""
+    import newton as nt
+    import warp
+
+    warp.config.quiet = True
+    builder = nt.ModelBuilder()
+    if file.endswith(".xml"):
+        builder.add_mjcf(str(exported.folder / file))
+    else:
+        builder.add_urdf(str(exported.folder / file), floating=True)
+    model = builder.finalize(device="cpu")
+    state = model.state()
+    bodies, joints = ([label.split("/")[-1] for label in labels] for labels in (model.body_label, model.joint_label))
+    starts = dict(zip(joints, model.joint_q_start.numpy(), strict=False))
+    mass, center, inertia = (a.numpy().astype(float) for a in (model.body_mass, model.body_com, model.body_inertia))
+
+    def read(base, angles):
+        q = model.joint_q.numpy()
+        w, x, y, z = quaternion(base[:3, :3])
+        q[:7] = [*base[:3, 3], x, y, z, w]
+        for name, angle in angles.items():
+            q[starts[name]] = angle
+        nt.eval_fk(model, warp.array(q, dtype=float, device="cpu"), model.joint_qd, state)
+        frames = {}
+        for link, pose in zip(bodies, state.body_q.numpy().astype(float), strict=True):
+            frames[link] = np.eye(4)
+            frames[link][:3, :3] = rotation_from_quaternion([pose[6], *pose[3:6]])
+            frames[link][:3, 3] = pose[:3]
+        turns = np.array([frames[link][:3, :3] for link in bodies])
+        places = np.array([frames[link][:3, 3] for link in bodies]) + np.einsum("nij,nj->ni", turns, center)
+        com = mass @ places / mass.sum()
+        arms = places - com
+        squares = np.einsum("ni,ni->n", arms, arms)[:, None, None] * np.eye(3)
+        shifted = mass[:, None, None] * (squares - np.einsum("ni,nj->nij", arms, arms))
+        return Reading(mass.sum(), com, (turns @ inertia @ turns.transpose(0, 2, 1) + shifted).sum(0), frames, {})
+
+    return read
+
+
 def differences(exported: Exported, reader: Reader, postures: int, seed: int = 3) -> dict[str, float]:
     """Largest differences from Pinocchio over random postures and base poses; inertia: of its largest entry."""
     rng, reference, found = np.random.default_rng(seed), pinocchio(exported), {}
@@ -184,8 +225,9 @@ def differences(exported: Exported, reader: Reader, postures: int, seed: int = 3
             "com": (other.com, one.com),
             "inertia": (other.inertia / np.abs(one.inertia).max(), one.inertia / np.abs(one.inertia).max()),
             "frames": tuple(np.array([r.frames[link] for link in exported.robot.link_names]) for r in (other, one)),
-            "gravity": tuple(np.array([r.gravity[name] for name in angles]) for r in (other, one)),
         }
+        if other.gravity:
+            pairs["gravity"] = tuple(np.array([r.gravity[name] for name in angles]) for r in (other, one))
         for name, (a, b) in pairs.items():
             found[name] = max(found.get(name, 0.0), float(np.abs(np.subtract(a, b)).max()))
     return found
@@ -242,5 +284,7 @@ READERS: dict[str, tuple[str, Callable[[Exported], Reader]]] = {
     "Drake, `robot.sdf`": ("drake", partial(drake, file="robot.sdf")),
     "Drake, `robot.xml`": ("drake", partial(drake, file="robot.xml")),
     "iDynTree, `robot.urdf`": ("idyntree", idyntree),
+    "Newton, `robot.urdf`": ("newton", newton),
+    "Newton, `robot.xml`": ("newton", partial(newton, file="robot.xml")),
 }  # what reads which file -> package, reader
 USD = ("urdf-usd-converter", "USD, `robot.urdf`")
