@@ -146,7 +146,7 @@ def make(
     start = time.perf_counter()
     parts = build_parts(study, design, config)
     stress = {name: stress_settings(config, name) for name in parts}
-    keys = {name: _part_key(study, part, stress[name]) for name, part in parts.items()}
+    keys = {name: part_key(study, part, stress[name]) for name, part in parts.items()}
     known = _known_documents(keys, cache)
     masses = {name: _mass(known[name]) if name in known else part.mass_properties() for name, part in parts.items()}
     robot = _assemble(study, design, config, parts, masses)
@@ -362,7 +362,7 @@ def _assemble(
     return assemble(base, {part.name: part.placements for part in config.parts}, bodies)
 
 
-def _part_key(study: StudyData, part: Part, settings: StressSettings) -> str:
+def part_key(study: StudyData, part: Part, settings: StressSettings) -> str:
     """Cache key of a part's numbers: the code, every value of the part (`repr` is exact), how it is analyzed."""
     return f"{study.code_hash}/{part.name}/{hashlib.sha256(repr((part, settings)).encode()).hexdigest()[:24]}"
 

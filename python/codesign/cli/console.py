@@ -17,6 +17,7 @@ from codesign.problem.evaluation import least_infeasible
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from codesign.followup.tables import Table as PartTable
     from codesign.parts.strength import Confirmation
     from codesign.problem.evaluation import Evaluation
     from codesign.report.tolerances import Tolerances
@@ -146,6 +147,41 @@ def print_run(run: Run, as_json: bool) -> int:
         return 0
     _print_nothing_feasible(run.evaluations)
     return 1
+
+
+def print_tables(tables: Sequence[PartTable], as_json: bool) -> int:
+    """What tables of parts hold; exit code 1 if a part could not be analyzed."""
+    rows = [_table_row(table) for table in tables]
+    if as_json:
+        print_json(rows)
+        return 1 if any(row["failed"] for row in rows) else 0
+    summary = Table("part", "variables", "designs", "failed", "least safety factor", "mass, kg")
+    for row in rows:
+        masses = f"{shown(row['least_mass'], 4)} to {shown(row['largest_mass'], 4)}"
+        numbers = (str(row["designs"]), str(row["failed"]), shown(row["least_safety_factor"], 4), masses)
+        summary.add_row(row["part"], ", ".join(row["variables"]), *numbers)
+    out.print(summary)
+    for row in rows:
+        out.print(f"{row['part']}: {row['run'] or row['reason']}", soft_wrap=True)
+    return 1 if any(row["failed"] for row in rows) else 0
+
+
+def _table_row(table: PartTable) -> dict[str, Any]:
+    evaluations = table.run.evaluations if table.run is not None else []
+    found = [evaluation.parts[table.part] for evaluation in evaluations if evaluation.status == "feasible"]
+    factors = [part["safety_factor"] for part in found if part["safety_factor"] is not None]
+    masses = [part["mass"] for part in found]
+    return {
+        "part": table.part,
+        "variables": list(table.variables),
+        "designs": len(evaluations),
+        "failed": len(evaluations) - len(found),
+        "least_safety_factor": min(factors, default=None),
+        "least_mass": min(masses, default=None),
+        "largest_mass": max(masses, default=None),
+        "run": None if table.run is None else str(table.run.out),
+        "reason": table.reason,
+    }
 
 
 def _print_front(front: Sequence[Record]) -> None:

@@ -1,4 +1,4 @@
-"""Commands about runs: optimize, resume, runs, report, validate, tolerances."""
+"""Commands about runs: optimize, resume, runs, report, validate, tolerances; and tables of parts."""
 
 from __future__ import annotations
 
@@ -123,6 +123,35 @@ def resume(
         err.print(f"continue with: codesign resume {run_dir}")
         return INTERRUPTED
     return print_run(run, as_json)
+
+
+@commands.command(epilog="Example: `codesign tabulate --study ironcub_paper --workers 2 --out tables`")
+def tabulate(
+    study: StudyOption = DEFAULT_STUDY,
+    parts: Annotated[list[str] | None, typer.Option("--part", help="A part of the study; default: all.")] = None,
+    out_dir: Annotated[Path | None, typer.Option("--out", help="Folder of the tables; goes on with one begun.")] = None,
+    most: Annotated[int, typer.Option(min=1, help="Designs of a part that are not too many.")] = 20_000,
+    workers: WorkersOption = None,
+    cluster: ClusterOption = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Parts over the whole grid of their variables, into the cache: the study then meshes and solves nothing."""
+    from codesign.chain.study import load_study
+    from codesign.cli.console import print_tables
+    from codesign.followup.tables import tabulate as run_tabulate
+    from codesign.search.progress import ProgressBar
+
+    loaded = load_study(study)
+    folder = out_dir or Path("tables") / loaded.name
+    try:
+        with ProgressBar(loaded.name) as bar:
+            tables = run_tabulate(
+                loaded, parts or (), out=folder, most=most, workers=workers, cluster=cluster, progress=bar
+            )
+    except KeyboardInterrupt:
+        err.print("the same command goes on where it was stopped", soft_wrap=True)
+        return INTERRUPTED
+    return print_tables(tables, as_json)
 
 
 @commands.command("runs", epilog="Example: `codesign runs runs --json`")
