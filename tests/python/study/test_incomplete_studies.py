@@ -14,6 +14,8 @@ from codesign.cli import main
 from codesign.cli.commands.design import fly
 from codesign.cli.commands.study import check
 from codesign.errors import ExecutionError
+from codesign.execution.cluster import DaskExecutor
+from codesign.execution.pool import Limits, StudyRef
 from codesign.report.compute import history
 from codesign.report.page.encode import _flight as page_of_flight
 from codesign.study import new_study
@@ -91,6 +93,12 @@ def test_without_viser_the_viewer_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "viser", None)
     with pytest.raises(ExecutionError, match=r"pip install 'codesign\[view\]'"):
         Viewer(None, [], {}, None, None, "127.0.0.1", 8080, None)
+
+
+def test_without_dask_a_cluster_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ExecutionError, match=r"pip install 'codesign\[cluster\]'"):
+        DaskExecutor(StudyRef("gimbal_quad", ""), "local:1", Limits(), None)
 
 
 def test_square_brackets_of_a_message_are_printed(tmp_path, monkeypatch, capsys):
