@@ -51,11 +51,10 @@ class SqliteCache:
         self._connection: sqlite3.Connection | None = None
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            connection = sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
-            connection.execute("PRAGMA journal_mode=WAL")
-            connection.execute("PRAGMA synchronous=NORMAL")  # a power cut may lose entries, not damage the file
-            connection.executescript(SCHEMA)
-            self._connection = connection
+            self._connection = sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
+            self._connection.execute("PRAGMA journal_mode=WAL")
+            self._connection.execute("PRAGMA synchronous=NORMAL")  # a power cut may lose entries, not damage the file
+            self._connection.executescript(SCHEMA)
         except (OSError, sqlite3.Error) as error:
             self._disable(error)
 

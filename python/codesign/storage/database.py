@@ -108,6 +108,17 @@ def write_new(path: Path, meta: Mapping[str, Any]) -> None:
         connection.executemany("INSERT INTO meta (key, value) VALUES (?, ?)", rows)
 
 
+def connect_to_read(path: Path, mode: str) -> sqlite3.Connection:
+    """A database that can be read, opened as SQLite's URI parameters say. Raises: sqlite3.Error: it cannot."""
+    connection = sqlite3.connect(f"{path.resolve().as_uri()}?{mode}", uri=True, isolation_level=None)
+    try:
+        connection.execute("SELECT count(*) FROM sqlite_schema")
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
 @contextlib.contextmanager
 def guard(path: Path) -> Iterator[None]:
     """Turns SQLite's errors into StoreError."""

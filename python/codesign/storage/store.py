@@ -25,6 +25,7 @@ from codesign.storage.database import (
     LOCK,
     MIGRATIONS,
     VERSION,
+    connect_to_read,
     existing,
     guard,
     lock_folder,
@@ -103,17 +104,15 @@ class RunStore:
             if "immutable" in mode and path.with_name(DATABASE + "-wal").exists():
                 continue
             try:
-                connection = sqlite3.connect(f"{path.resolve().as_uri()}?{mode}", uri=True, isolation_level=None)
-                connection.execute("SELECT count(*) FROM sqlite_schema")
+                store = cls(path, connect_to_read(path, mode), None)
             except sqlite3.Error as error:
                 errors.append(str(error))
                 continue
-            store = cls(path, connection, None)
-            if store._older():
-                store.close()
-                cls.open(out).close()  # brings its format up to date
-                return cls.read(out)
-            return store._checked()
+            if not store._older():
+                return store._checked()
+            store.close()
+            cls.open(out).close()  # brings its format up to date
+            return cls.read(out)
         raise StoreError(f"{path}: cannot be read: {'; '.join(errors)}")
 
     @classmethod
@@ -139,9 +138,13 @@ class RunStore:
         return self
 
     def _older(self) -> bool:
-        """Whether the file is a run of an earlier format."""
-        (application,) = self._execute("PRAGMA application_id").fetchone()
-        (version,) = self._execute("PRAGMA user_version").fetchone()
+        """Whether the file is a run of an earlier format; closed if it is none at all."""
+        try:
+            (application,) = self._execute("PRAGMA application_id").fetchone()
+            (version,) = self._execute("PRAGMA user_version").fetchone()
+        except BaseException:
+            self.close()
+            raise
         return bool(application == APPLICATION_ID and version < VERSION)
 
     def _check_version(self) -> None:

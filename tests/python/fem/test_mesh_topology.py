@@ -156,7 +156,7 @@ def test_a_rib_that_meets_a_taller_post_at_a_grazing_angle_keeps_the_groove_open
     mesh = fem.tetrahedralize(surface, edge_length)
     assert_same_as_surface(mesh, surface, volume_tolerance=5e-3)
     assert mesh.report.small_faults == 0
-    assert mesh.report.refinements <= 2
+    assert mesh.report.refinements <= 3  # 2 with CGAL 5, 3 with CGAL 6
 
 
 @pytest.mark.parametrize("edge_length", [None, 1.8e-3])

@@ -16,6 +16,7 @@ import pytest
 from codesign.errors import StoreError
 from codesign.problem.evaluation import Evaluation
 from codesign.search.optimization import optimize, resume
+from codesign.storage.cache import SqliteCache
 from codesign.storage.database import DATABASE, VERSION
 from codesign.storage.records import Generation, Record
 from codesign.storage.runs import load_run
@@ -105,7 +106,7 @@ def test_a_run_of_the_first_format_is_brought_up_to_date_when_it_is_read(tmp_pat
         store._execute("UPDATE evaluations SET status = 'skipped' WHERE number = 0")
 
 
-def test_missing_foreign_newer_and_broken_files_are_refused(tmp_path) -> None:
+def test_missing_foreign_newer_and_broken_files_are_refused(tmp_path, monkeypatch) -> None:
     with pytest.raises(StoreError, match="no run here"):
         RunStore.open(tmp_path)
     with pytest.raises(StoreError, match="no run here"):
@@ -119,12 +120,20 @@ def test_missing_foreign_newer_and_broken_files_are_refused(tmp_path) -> None:
     broken.mkdir()
     (broken / DATABASE).write_bytes(b"not a database at all" * 1000)
     messages = {"newer": "newer codesign", "foreign": "not a run of codesign", "broken": "not a database"}
+    opened, connect = [], sqlite3.connect
+    monkeypatch.setattr(sqlite3, "connect", lambda *a, **k: opened.append(connect(*a, **k)) or opened[-1])
     for name, message in messages.items():
         before = (tmp_path / name / DATABASE).read_bytes()
         for open_store in (RunStore.open, RunStore.read):
             with pytest.raises(StoreError, match=message):
                 open_store(tmp_path / name)
         assert (tmp_path / name / DATABASE).read_bytes() == before
+    (tmp_path / "cache").write_bytes(b"not a database at all" * 1000)
+    assert SqliteCache(tmp_path / "cache").get("key") is None
+    assert len(opened) >= 7
+    for connection in opened:
+        with pytest.raises(sqlite3.ProgrammingError, match="closed"):
+            connection.execute("SELECT 1")
 
 
 def test_failed_creation_leaves_no_file(tmp_path) -> None:
