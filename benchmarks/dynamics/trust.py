@@ -4,8 +4,11 @@
   python benchmarks/dynamics/trust.py seeds --seeds 20 --design 15 42 80 108 --design 4 40 98 118
   python benchmarks/dynamics/trust.py hold --designs 6       # torques held for 8 ms against a torque loop of 1 ms
   python benchmarks/dynamics/trust.py time --repeats 5       # CPU of a flight over that of the study as published
+  python benchmarks/dynamics/trust.py steps --study ironcub --run RUN --designs 50   # with designs of that run's front
+  python benchmarks/dynamics/trust.py seeds --study ironcub --run RUN                # of each design on its front
 
-Designs of `steps`: published ones and Sobol points; of each the flights under its seeds, calm and at half steps.
+Designs of `steps`: published ones and Sobol points, with --run 29 far-apart ones of its front first; of each the
+flights under its seeds, calm, at half steps, and with an explicit Euler method at 1 ms.
 The share is that of the squared momentum errors before 2 s. With `--log FILE` designs flown before are not flown again.
 """
 
@@ -15,7 +18,7 @@ import argparse
 import json
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +29,7 @@ import codesign
 from codesign import dynamics as dyn
 from codesign.chain.flight import find_trajectory, flight_settings, joint_names
 from codesign.problem.pareto import non_dominated
+from codesign.storage.runs import load_run
 
 PUBLISHED = [
     (15, 42, 80, 108),
@@ -38,31 +42,52 @@ PUBLISHED = [
 NAMES = ("momentum", "joint velocity", "thrust")
 LOWEST, HIGHEST = (1, 40, 80, 96), (22, 100, 120, 150)
 BEGINNING = 2.0  # s
+OF_FRONT, FLAT = 29, 14  # designs of a run's front; degrees up to which Sobol points go with them
 
+Theta = Mapping[str, float | str]
 Change = Callable[[dyn.FlightSettings], None]
 
 
-def pool(count: int) -> list[tuple[int, ...]]:
-    """Designs on the grid: published ones, then Sobol points of the region that keeps the clearances."""
+def pool(study: codesign.Study, count: int, run: Path | None = None) -> list[Theta]:
+    """Designs on the grid: far apart ones of a run's front, published ones, Sobol points that may keep clearances."""
     points = qmc.scale(qmc.Sobol(4, seed=7).random(32), LOWEST, HIGHEST)
     drawn = [(round(a), *(2 * round(x / 2) for x in rest)) for a, *rest in points]
-    return (PUBLISHED + drawn)[:count]
+    chosen = far_apart(run, OF_FRONT) if run else []
+    flat = [theta for theta in drawn if theta[0] <= FLAT] if run else drawn
+    return [*chosen, *(whole(study, theta) for theta in PUBLISHED + flat)][:count]
 
 
-def prepared(
-    study: codesign.Study, theta: Sequence[int], change: Change | None = None
-) -> tuple[dyn.Model, dyn.FlightSettings]:
+def whole(study: codesign.Study, numbers: Sequence[int]) -> Theta:
+    """A design by its four lengths; what else the study varies is as in its Original."""
+    baseline = study.config.baseline
+    return dict(zip((v.name for v in study.space.variables), numbers, strict=False)) | {
+        v.name: baseline[v.name] for v in study.space.variables[len(numbers) :]
+    }
+
+
+def far_apart(run: Path, count: int) -> list[Theta]:
+    """Designs of a run's front, each farthest from those before it in the front's box; the first at its middle."""
+    front = [record.evaluation for record in load_run(run).front]
+    values = np.array([list((e.objectives or {}).values()) for e in front])
+    values = (values - values.min(axis=0)) / (values.max(axis=0) - values.min(axis=0))
+    order = [int(np.argmin(np.linalg.norm(values - 0.5, axis=1)))]
+    while len(order) < min(count, len(front)):
+        nearest = np.linalg.norm(values[:, None] - values[order], axis=2).min(axis=1)
+        order.append(int(np.argmax(nearest)))
+    return [front[k].design for k in order]
+
+
+def prepared(study: codesign.Study, theta: Theta, change: Change | None = None) -> tuple[dyn.Model, dyn.FlightSettings]:
     """Robot and settings of the study's flight of a design."""
-    config = study.configured(study.space.design(list(theta)))
+    design = study.space.design(theta)
+    config = study.configured(design)
     settings = flight_settings(config.flown, find_trajectory(config, config.flown.trajectory))
     if change is not None:
         change(settings)
-    return dyn.load_urdf(study.build_robot(list(theta)), joints=joint_names(config.flown)), settings
+    return dyn.load_urdf(study.build_robot(theta), joints=joint_names(config.flown)), settings
 
 
-def fly(
-    study: codesign.Study, theta: Sequence[int], seeds: Sequence[int], change: Change | None = None
-) -> list[dyn.FlightLog]:
+def fly(study: codesign.Study, theta: Theta, seeds: Sequence[int], change: Change | None = None) -> list[dyn.FlightLog]:
     """The study's flight of a design under each seed."""
     return list(dyn.simulate_flights(*prepared(study, theta, change), list(seeds)))
 
@@ -84,6 +109,10 @@ def halve(settings: dyn.FlightSettings) -> None:
     settings.step *= 0.5  # the torque and plant steps are fractions of it
 
 
+def euler(settings: dyn.FlightSettings) -> None:
+    settings.integrator, settings.substeps = dyn.Integrator.euler, round(settings.step / settings.torque_updates / 1e-3)
+
+
 def calm(settings: dyn.FlightSettings) -> None:
     settings.disturbances = dyn.Disturbances()
 
@@ -96,7 +125,7 @@ def calm_and_halved(settings: dyn.FlightSettings) -> None:
 Figures = dict[str, Any]
 
 
-def figures(study: codesign.Study, theta: Sequence[int], seeds: Sequence[int]) -> Figures:
+def figures(study: codesign.Study, theta: Theta, seeds: Sequence[int]) -> Figures:
     """Objectives of a design, calm and disturbed, at the study's steps and at half of them; `share` of each flight."""
     logs = fly(study, theta, seeds)
     return {
@@ -104,31 +133,32 @@ def figures(study: codesign.Study, theta: Sequence[int], seeds: Sequence[int]) -
         "calm, halved": objectives(fly(study, theta, seeds[:1], calm_and_halved)),
         "disturbed": objectives(logs),
         "disturbed, halved": objectives(fly(study, theta, seeds, halve)),
+        "disturbed, Euler": objectives(fly(study, theta, seeds, euler)),
         "share": [early_share(log) for log in logs],
         "thrust": [log.max_thrust for log in logs],
     }
 
 
-def steps(study: codesign.Study, count: int, draws: int, file: Path | None) -> None:
+def steps(study: codesign.Study, designs: Sequence[Theta], draws: int, file: Path | None) -> None:
     """Objectives at the study's steps against half of them, calm and disturbed."""
     seeds = (study.config.flown.seeds or [0])[:draws]
     known: dict[str, Figures] = json.loads(file.read_text()) if file and file.exists() else {}
     found = []
-    for theta in pool(count):
-        key = f"{study.config.name} {theta} {seeds}"
+    for theta in designs:
+        key = f"{study.config.name} {tuple(theta.values())} {seeds}"
         if key not in known:
             known[key] = figures(study, theta, seeds)
             if file:
                 file.write_text(json.dumps(known))
         found.append(known[key])
-    for kind in ("calm", "disturbed"):
-        compare(kind, *(np.array([row[key] for row in found]) for key in (kind, f"{kind}, halved")))
+    for kind, other in (("calm", "halved"), ("disturbed", "halved"), ("disturbed", "Euler")):
+        compare(f"{kind}, {other}", *(np.array([row[key] for row in found]) for key in (kind, f"{kind}, {other}")))
     shares, thrusts = ([value for row in found for value in row[key]] for key in ("share", "thrust"))
     print(f"share of squared momentum error before {BEGINNING:g} s: largest {max(shares):.1%} of {len(shares)} flights")
     print(f"largest thrust: {max(thrusts):.1f} N")
 
 
-def hold(study: codesign.Study, count: int) -> None:
+def hold(study: codesign.Study, designs: Sequence[Theta]) -> None:
     """Joint velocity under torques held for the 8 ms of one loop, against a torque loop of 1 ms; calm, no delays."""
 
     def rates(updates: int) -> Change:
@@ -139,9 +169,12 @@ def hold(study: codesign.Study, count: int) -> None:
 
         return change
 
-    for theta in pool(count):
+    for theta in designs:
         held, fast = (objectives(fly(study, theta, [0], rates(updates)))[1] for updates in (1, 8))
-        print(f"{theta}: joint velocity {held:.4f} held, {fast:.4f} at 1 ms, {held / fast - 1.0:+.1%}", flush=True)
+        print(
+            f"{tuple(theta.values())}: joint velocity {held:.4f} held, {fast:.4f} at 1 ms, {held / fast - 1.0:+.1%}",
+            flush=True,
+        )
 
 
 def compare(kind: str, whole: np.ndarray, halved: np.ndarray) -> None:
@@ -173,20 +206,24 @@ def hypervolume(points: np.ndarray, samples: int = 16) -> float:
     return float(dominated.mean())
 
 
-def seeds(study: codesign.Study, designs: Sequence[Sequence[int]], count: int) -> None:
+def seeds(study: codesign.Study, designs: Sequence[Theta], count: int) -> None:
     """How many draws of the unknown each design survives."""
     for theta in designs:
         logs = fly(study, theta, range(100, 100 + count))
         flown = [log for log in logs if log.completed]
         largest = max((log.max_thrust for log in flown), default=np.nan)
         fuel = max((log.fuel_burnt for log in flown), default=np.nan)
-        print(f"{tuple(theta)}: {len(flown)} of {count} fly, largest thrust {largest:.1f} N, fuel {fuel:.2f} kg")
+        print(
+            f"{tuple(theta.values())}: {len(flown)} of {count} fly, largest thrust {largest:.1f} N, fuel {fuel:.2f} kg",
+            flush=True,
+        )
 
 
 def times(study: codesign.Study, repeats: int) -> None:
     """CPU time of one flight over that of the study as published, alternating in one process; median of the ratios."""
-    published = prepared(codesign.load_study("ironcub_paper"), PUBLISHED[0])
-    own = prepared(study, PUBLISHED[0])
+    paper = codesign.load_study("ironcub_paper")
+    published = prepared(paper, whole(paper, PUBLISHED[0]))
+    own = prepared(study, whole(study, PUBLISHED[0]))
     batch = list(study.config.flown.seeds) or [0]
     ratios: dict[str, list[float]] = {"one flight": [], f"a flight of a batch of {len(batch)}": []}
     for _ in range(repeats):
@@ -209,6 +246,7 @@ def main() -> None:
     parser.add_argument("what", choices=["steps", "seeds", "hold", "time"])
     parser.add_argument("--study", default="ironcub_robust")
     parser.add_argument("--designs", type=int, default=28)
+    parser.add_argument("--run", type=Path, help="whose front is flown, in `steps` and `seeds`")
     parser.add_argument("--draws", type=int, default=3, help="of the study's seeds, in `steps`")
     parser.add_argument("--log", type=Path, help="file of the designs flown so far, in `steps`")
     parser.add_argument("--seeds", type=int, default=20)
@@ -217,11 +255,12 @@ def main() -> None:
     asked = parser.parse_args()
     study = codesign.load_study(asked.study)
     if asked.what == "steps":
-        steps(study, asked.designs, asked.draws, asked.log)
+        steps(study, pool(study, asked.designs, asked.run), asked.draws, asked.log)
     elif asked.what == "seeds":
-        seeds(study, asked.design or PUBLISHED[:1], asked.seeds)
+        named = [whole(study, theta) for theta in asked.design or PUBLISHED[:1]]
+        seeds(study, [r.evaluation.design for r in load_run(asked.run).front] if asked.run else named, asked.seeds)
     elif asked.what == "hold":
-        hold(study, asked.designs)
+        hold(study, pool(study, asked.designs))
     else:
         times(study, asked.repeats)
 
