@@ -26,7 +26,7 @@ def parse_selection(text: str, scale: float) -> Place:
     """A place on the part; coordinates and radii in units of `scale` meters.
 
     `near:x,y,z`, `box:x0,y0,z0,x1,y1,z1`, `normal:nx,ny,nz[:degrees]`, `face:NAME` (of a STEP file, or its number), or
-    `hole:r=RADIUS` (all round holes of that radius).
+    `hole:r=RADIUS` (all round holes of that radius, no fillets).
 
     Raises: StressInputError.
     """

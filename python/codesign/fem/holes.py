@@ -1,4 +1,4 @@
-"""Round holes of a surface: faces whose corners lie on a cylinder with the material around it."""
+"""Round holes of a surface: faces whose corners lie on a cylinder, with the material all around it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from codesign._core.fem import SurfaceMesh
 
 FLAT = 1e-3  # share of the squared normals along the axis, and of the radius that corners may be off the circle
 LEAST_FACETS = 4
+SAME_CIRCLE = 1e-2  # of the radius, and of a right angle: what two faces of one hole may differ
+OPEN = np.radians(170.0)  # a wall open this far is no hole: a fillet, the end of a slot, a groove
 
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
-    """A round face: axis (3,) unit vector, center (3,) a point of it [m], radius [m]; hollow: the wall of a hole."""
+    """A round face: axis (3,) unit vector, center (3,) a point of it [m], radius [m]; hollow: material outside."""
 
     axis: NDArray[np.float64]
     center: NDArray[np.float64]
@@ -24,10 +26,42 @@ class Cylinder:
 
 
 def holes(surface: SurfaceMesh) -> dict[int, Cylinder]:
-    """Faces (indices into `surface.face_names`) that are walls of round holes."""
+    """Faces (indices into `surface.face_names`) that are walls of round holes, or together with others such a wall."""
+    hollow = hollows(surface)
+    return {index: hollow[index] for index in hollow if _opening(surface, hollow, index) < OPEN}
+
+
+def hollows(surface: SurfaceMesh) -> dict[int, Cylinder]:
+    """Faces (indices into `surface.face_names`) that are round and hollow: holes, fillets, ends of slots, grooves."""
     face = np.asarray(surface.face)
     found = {int(index): cylinder_of(surface, face == index) for index in np.unique(face)}
     return {index: cylinder for index, cylinder in found.items() if cylinder is not None and cylinder.hollow}
+
+
+def _opening(surface: SurfaceMesh, hollow: dict[int, Cylinder], index: int) -> float:
+    """Largest angle [rad] around the axis of a face without a corner of it or of those that go around with it.
+
+    Those: the same circle, and a stretch of the axis in common.
+    """
+    wall = hollow[index]
+    face = np.asarray(surface.face)
+    points = {i: surface.points[np.unique(surface.triangles[face == i])] for i in hollow}
+    along = {i: (points[i] - wall.center) @ wall.axis for i in hollow}
+    low, high = along[index].min(), along[index].max()
+    around = []
+    for i, other in hollow.items():
+        away = other.center - wall.center
+        shifted = np.linalg.norm(away - wall.axis * (away @ wall.axis))
+        tilted = np.linalg.norm(np.cross(wall.axis, other.axis))
+        if max(tilted, shifted / wall.radius, abs(other.radius / wall.radius - 1.0)) > SAME_CIRCLE:
+            continue
+        common = min(high, along[i].max()) - max(low, along[i].min())
+        if common > SAME_CIRCLE * wall.radius:
+            around.append(points[i] - wall.center)
+    arms = np.concatenate(around)
+    first = np.cross(wall.axis, np.eye(3)[np.argmin(np.abs(wall.axis))])
+    angles = np.sort(np.arctan2(arms @ np.cross(wall.axis, first), arms @ first))
+    return float(np.diff(angles, append=angles[0] + 2.0 * np.pi).max())
 
 
 def cylinder_of(surface: SurfaceMesh, facets: NDArray[np.bool_]) -> Cylinder | None:

@@ -12,11 +12,12 @@ from codesign import fem
 from codesign._core import fem as _core
 from codesign.errors import MeshError, ModelError
 from codesign.fem.cut import cut_by_box
-from codesign.fem.holes import holes
+from codesign.fem.holes import holes, hollows
 from codesign.fem.model import MAX_BEND_DEG
 from codesign.names import nearest
 from codesign.units import MILLIMETER
 
+MOST_FACES = 12  # in a message
 SAME_RADIUS = 0.01  # relative
 
 Triangles = NDArray[np.bool_]  # (m,) of the surface: selected or not
@@ -92,7 +93,9 @@ class NamedFace:
             hint = (
                 nearest(self.name, known) if known else "the file names none: choose by near:, box:, normal: or hole:"
             )
-            raise ModelError(f"no face {self.name!r}; {hint}")
+            if self.name.removeprefix("face ").isdecimal() and known:
+                hint = f"there are {', '.join(known[:MOST_FACES])}{' …' if len(known) > MOST_FACES else ''}"
+            raise ModelError(f"no face {self.name!r}; {hint}; `codesign faces FILE` lists those of a STEP file")
         chosen: Triangles = np.asarray(surface.face) == names.index(self.name)
         return chosen
 
@@ -103,7 +106,7 @@ class NamedFace:
 
 @dataclass(frozen=True)
 class Holes:
-    """The walls of all round holes of a radius [m]."""
+    """The walls of all round holes of a radius [m]; round faces that do not close, fillets say, are none."""
 
     radius: float
 
@@ -114,6 +117,10 @@ class Holes:
         if not chosen:
             radii = sorted({f"{hole.radius / MILLIMETER:.4g}" for hole in found.values()})
             known = f"the holes have radii of {', '.join(radii)} mm" if radii else "there is no round hole"
+            if any(
+                abs(round_.radius - self.radius) <= SAME_RADIUS * self.radius for round_ in hollows(surface).values()
+            ):
+                known += "; a round face of this radius does not close (a fillet, a slot): choose it by near: or face:"
             raise ModelError(f"no hole of radius {self.radius / MILLIMETER:g} mm; {known}")
         facets: Triangles = np.isin(np.asarray(surface.face), chosen)
         return facets

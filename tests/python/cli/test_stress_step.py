@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from codesign import fem
+from codesign.cli.faces import face_documents, print_faces
 from codesign.cli.stress import stress_document
 from codesign.errors import CodesignError
 from codesign.fem.holes import cylinder_of, holes
+from codesign.fem.step import load_step
 from codesign.geometry import Shape, box, cylinder
 from codesign.parts import Part, write_step
 from codesign.parts.materials import named_material
@@ -62,7 +64,7 @@ def test_holes_are_chosen_by_their_radius_in_step_and_stl(files):
     ("fix", "message"),
     [
         ("face:clmp", "no face 'clmp'.*'clamp'"),
-        ("face:99", "no face 'face 99'"),
+        ("face:99", "no face 'face 99'; there are face 1, clamp, .*`codesign faces FILE` lists"),
         ("hole:r=5", r"no hole of radius 5 mm; the holes have radii of 3, 4 mm"),
         ("hole:r=-1", "radius must be positive"),
         ("face:", "expected near"),
@@ -83,3 +85,55 @@ def test_a_boss_is_no_hole_and_a_plane_no_cylinder(files):
             assert found.radius == pytest.approx(5e-3, rel=1e-3)
             assert abs(found.axis[2]) == pytest.approx(1.0, abs=1e-6)
             assert found.center[:2] == pytest.approx([0.05, 0.015], abs=1e-5)
+
+
+@dataclass(frozen=True)
+class Angle(Part):
+    """Two legs of 6 mm with an inner fillet of 5 mm, a bore of 10 mm, a slot of 6.6 mm."""
+
+    name: str = "angle"
+    density: float = 2700.0
+
+    def shape(self) -> Shape:
+        legs = box((0, 0, 0), (80, 40, 6)) + box((0, 0, 0), (6, 40, 60))
+        corner = box((6, 0, 6), (11, 40, 11)) - cylinder(5, -1, 41).rotated("x", -90).moved(11, 0, 11)
+        bore = cylinder(5, -1, 7).rotated("y", 90).moved(0, 20, 40)
+        slot = cylinder(3.3, -1, 7).moved(40, 20, 0) + cylinder(3.3, -1, 7).moved(60, 20, 0)
+        return legs + corner - bore - slot - box((40, 16.7, -1), (60, 23.3, 7))
+
+
+@pytest.fixture(scope="module")
+def angle(tmp_path_factory):
+    path = tmp_path_factory.mktemp("angle") / "angle.step"
+    write_step(Angle(), path)
+    return path
+
+
+def test_fillets_and_ends_of_slots_are_no_holes(angle):
+    document = run(angle, ["normal:0,0,-1"], ["hole:r=5: bearing 0 0 -500"])
+    assert document["places"][1]["area"] == pytest.approx(2 * math.pi * 5 * 6 * 1e-6, rel=0.02)
+    with pytest.raises(CodesignError, match="the holes have radii of 5 mm; a round face of this radius does not close"):
+        run(angle, ["normal:0,0,-1"], ["hole:r=3.3: 0 0 -500"])
+
+
+def test_a_bore_in_two_halves_is_a_hole(angle):
+    surface = load_step(angle).by_face()
+    points, triangles = np.asarray(surface.points), np.asarray(surface.triangles)
+    (bore,) = holes(surface)
+    upper = (points[triangles].mean(axis=1)[:, 2] > 0.04) & (np.asarray(surface.face) == bore)
+    face = np.where(upper, len(surface.face_names), np.asarray(surface.face))
+    halves = fem.SurfaceMesh(points, triangles, face.tolist(), [*surface.face_names, "upper half"])
+    assert len(holes(halves)) == 2
+    only_one = np.asarray(halves.face) != bore
+    open_surface = fem.SurfaceMesh(points, triangles[only_one], face[only_one].tolist(), list(halves.face_names))
+    assert holes(open_surface) == {}
+
+
+def test_faces_lists_what_can_be_selected(angle, capsys):
+    documents = face_documents(angle)
+    print_faces(documents)
+    table = capsys.readouterr().out
+    assert "face:1" in table and "hole" in table and "cylinder" in table
+    assert sorted(round(f["radius"] * 1e3, 2) for f in documents if f["type"] == "cylinder") == [3.3, 3.3, 5.0]
+    (bore,) = (f for f in documents if f["type"] == "hole")
+    assert bore["center"] == pytest.approx([0.003, 0.020, 0.040], abs=1e-4)

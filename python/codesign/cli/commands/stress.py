@@ -15,7 +15,8 @@ ExclusionOption = Annotated[
     float | None,
     typer.Option(
         metavar="MM",
-        help="Ignore stress peaks within this distance of borders of clamps; default: a fifth of the wall.",
+        help="Ignore stress peaks within this distance of borders of clamps; default: a fifth of the wall, hole, "
+        "fillet or clamp there.",
     ),
 ]
 RepairOption = Annotated[
@@ -32,7 +33,11 @@ def stress(
     fix: Annotated[list[str], typer.Option(metavar="SEL", help="Held in all directions, or 'SEL: xz' in two.")],
     load: Annotated[
         list[str] | None,
-        typer.Option(metavar="'SEL: LOAD'", help="Total force FX FY FZ in N; pressure P or traction TX TY TZ in MPa."),
+        typer.Option(
+            metavar="'SEL: LOAD'",
+            help="Total force FX FY FZ or bearing FX FY FZ (a pin in a bore) in N, moment MX MY MZ in N m, "
+            "pressure P or traction TX TY TZ in MPa.",
+        ),
     ] = None,
     acceleration: Annotated[
         str | None, typer.Option(metavar="'AX AY AZ'", help="Of the whole part, as gravity: m/s².")
@@ -60,7 +65,7 @@ def stress(
 
     SEL is near:x,y,z (the smooth face nearest to a point), box:x0,y0,z0,x1,y1,z1 (all faces inside) or
     normal:nx,ny,nz[:degrees] (faces that look there), face:NAME (of a STEP file, or its number), hole:r=RADIUS (all
-    round holes of that radius); in the file's units.
+    round holes of that radius, no fillets); in the file's units. `codesign faces` lists those of a STEP file.
     """
     from codesign.cli.stress import stress_document
     from codesign.cli.stress_options import find_material
@@ -86,6 +91,22 @@ def stress(
         print_stress(document)
     factor = document["safety_factor"]
     return 0 if factor is None or factor >= 1.0 else 1
+
+
+@commands.command(epilog="Example: `codesign faces bracket.step`")
+def faces(
+    part: Annotated[Path, typer.Argument(metavar="PART", help="A STEP file of one solid.")],
+    as_json: JsonOption = False,
+) -> int:
+    """Faces of a STEP file for the selections of `codesign stress`: name or number, type, radius, area, middle."""
+    from codesign.cli.faces import face_documents, print_faces
+
+    documents = face_documents(part)
+    if as_json:
+        print_json(documents)
+    else:
+        print_faces(documents)
+    return 0
 
 
 @commands.command(epilog="Example: `codesign materials ti-6al-4v`")
