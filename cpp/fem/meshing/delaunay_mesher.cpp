@@ -25,6 +25,7 @@
 #include "fem/meshing/ball_size.hpp"
 #include "fem/meshing/feature_curve.hpp"
 #include "fem/meshing/mesh_watch.hpp"
+#include "fem/meshing/spread_triangles.hpp"
 #include "fem/surface/solid_oracle.hpp"
 
 namespace codesign::fem {
@@ -169,7 +170,9 @@ class SolidDomain {
     return forward < backward ? forward : -backward;
   }
   Point construct_point_on_curve(const Point& p, int curve, FT distance) const {
-    return to_point(asked(curve).point_at(to_vector(p), distance));
+    const Vector3d point = asked(curve).point_at(to_vector(p), distance);
+    watch_.ball(point);
+    return to_point(point);
   }
   CGAL::Sign distance_sign(const Point& p, const Point& q, int curve) const {
     return CGAL::sign(asked(curve).position(to_vector(q)) - asked(curve).position(to_vector(p)));
@@ -247,27 +250,6 @@ struct LineSizingField {
     return balls.at(to_vector(p), index - 1, wanted);
   }
 };
-
-// A few triangles of a shell, far from each other.
-std::vector<int> spread_triangles(const SurfaceMesh& surface, const std::vector<int>& shell,
-                                  int which) {
-  const auto center = [&](int t) -> Vector3d {
-    return (corner(surface, t, 0) + corner(surface, t, 1) + corner(surface, t, 2)) / 3.0;
-  };
-  std::vector<int> members, chosen;
-  for (std::size_t t = 0; t < shell.size(); ++t)
-    if (shell[t] == which) members.push_back(static_cast<int>(t));
-  std::vector<double> distance(members.size(), kInfinity);
-  for (std::size_t next = 0; chosen.size() < 12 && distance[next] > 0.0;) {
-    chosen.push_back(members[next]);
-    const Vector3d p = center(members[next]);
-    for (std::size_t i = 0; i < members.size(); ++i)
-      distance[i] = std::min(distance[i], (center(members[i]) - p).squaredNorm());
-    next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) -
-                                    distance.begin());
-  }
-  return chosen;
-}
 
 void insert_points(const SurfaceMesh& surface, const Patches& patches, int shell,
                    Complex& complex) {
@@ -379,6 +361,7 @@ LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
         set::facet_topology = attempt.separate_patches ? CGAL::FACET_VERTICES_ON_SAME_SURFACE_PATCH
                                                        : CGAL::FACET_VERTICES_ON_SURFACE,
         set::cell_radius_edge_ratio = options.radius_edge, set::cell_size = length);
+    watch.start_balls(size);
     Control control;
     control.maximal_number_of_vertices = options.max_vertices;
     control.pointer_to_error_code = &error;

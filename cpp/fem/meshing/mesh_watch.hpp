@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <atomic>
 #include <cstddef>
+#include <map>
 #include <thread>
 #include <vector>
 
@@ -20,7 +22,7 @@ double thread_seconds();
 // The time limit is a safety net behind it; Ctrl-C ends it too.
 class MeshWatch {
  public:
-  enum class Limit { work, time, vertices };
+  enum class Limit { work, time, vertices, crowd };
 
   struct Stop {  // thrown through the refinement
     Limit limit;
@@ -39,6 +41,14 @@ class MeshWatch {
     if (++questions_ > most_questions_) stop(Limit::work);
     if ((questions_ & 0x3F) == 0) tick();
   }
+
+  // The protecting balls on feature lines are counted from here, for a mesh of this size.
+  void start_balls(const SizeField& size);
+
+  // A ball is set. Each takes longer the more there are around it, so lines that ask for ever more
+  // of them in one place (they meet at a tiny angle) are stopped before the questions are used up.
+  // Throws Stop.
+  void ball(const Eigen::Vector3d& center);
 
   // A step of a later stage, named for the message. Throws MeshLimitError, Interrupted.
   void step(const char* stage);
@@ -69,6 +79,8 @@ class MeshWatch {
   double deadline_, time_limit_;
   std::size_t most_vertices_, most_questions_, questions_ = 0;
   unsigned steps_ = 0;
+  double cell_ = 1.0;  // in which balls are counted, m
+  std::map<std::array<long, 3>, int> balls_;
 };
 
 }  // namespace codesign::fem
