@@ -12,6 +12,8 @@ import importlib
 import json
 import os
 import random
+import resource
+import subprocess
 import sys
 import tempfile
 import time
@@ -25,6 +27,7 @@ from codesign.errors import StudyError
 
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
 OTHER = {"angle": 60, "distance": 60, "offset": 100, "length": 150}  # shares no part with DESIGN
+THIRD = {"angle": 20, "distance": 50, "offset": 90, "length": 120}  # nor does this one, which flies to the end
 PLACES = {
     "stress_settings": ("codesign.chain.chain", "codesign.pipeline"),
     "part_case": ("codesign.parts.load_case", "codesign.analysis"),
@@ -55,6 +58,20 @@ def cpu(call: Callable[[], object]) -> float:
     return time.process_time() - start
 
 
+def child_cpu(*arguments: str) -> float:
+    """CPU seconds of this Python with arguments, from its start to its end."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, "-P", *arguments], check=True, stdout=subprocess.DEVNULL)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+class Kept(dict[str, Any]):
+    """A cache of parts in memory."""
+
+    put = dict.__setitem__
+
+
 def published_study() -> codesign.Study:
     """The study as published, which older revisions call ironcub."""
     try:
@@ -68,10 +85,19 @@ def times() -> dict[str, float]:
     study = published_study()
     parts = study.build_parts(DESIGN)
     cases = {n: find("part_case")(p, find("stress_settings")(study.config, n)) for n, p in parts.items()}
-    seconds = {f"{n}: surface to stress": cpu(lambda c=c: find("analyze_part")(c)) for n, c in cases.items()}
+    seconds = {
+        "start: load the study": child_cpu("-c", f"import codesign; codesign.load_study({study.name!r})"),
+        "start: codesign --help": child_cpu(str(Path(sys.executable).with_name("codesign")), "--help"),
+    }
+    fresh = study.build_parts(OTHER).values()
+    seconds["both parts: surface and mass"] = cpu(lambda: [(p.surface(), p.mass_properties()) for p in fresh])
+    seconds |= {f"{n}: surface to stress": cpu(lambda c=c: find("analyze_part")(c)) for n, c in cases.items()}
     robot = study.build_robot(DESIGN)
     seconds["flight of 42 s"] = cpu(lambda: find("fly_robot")(study, robot))
-    seconds["evaluate, cold"] = cpu(lambda: study.evaluate(OTHER))
+    seconds["evaluate, cold"] = cpu(lambda: study.evaluate(THIRD))
+    cache = Kept()
+    study.evaluate(THIRD, cache=cache)
+    seconds["evaluate, parts known"] = cpu(lambda: study.evaluate(THIRD, cache=cache))
     return seconds
 
 

@@ -64,10 +64,16 @@ def test_a_library_left_out_is_not_even_loaded_by_an_evaluation():
     assert done.stdout.strip() == "[]"
 
 
-def test_a_study_is_loaded_and_help_is_printed_without_what_they_do_not_need():
+def test_commands_start_without_what_they_do_not_need():
     loading = "import sys; from codesign import load_study; load_study('ironcub_paper')"
     helping = "import sys; sys.argv[1:] = ['--help']; from codesign.cli.main import main"
-    for code, unneeded in ((loading, NOT_LOADED | {"scipy", "urllib.request"}), (helping, NOT_LOADED | {"numpy"})):
+    ordering = "import sys, codesign.cli.design"  # of `codesign export`
+    unneeded_by = {
+        loading: NOT_LOADED | {"scipy", "urllib.request"},
+        helping: NOT_LOADED | {"numpy"},
+        ordering: NOT_LOADED | {"scipy"},
+    }
+    for code, unneeded in unneeded_by.items():
         ends = f"print(sorted({unneeded} & set(sys.modules)))"
         asked = "\ntry: main()\nexcept SystemExit: pass\n" if "main" in code else "\n"
         done = subprocess.run([sys.executable, "-c", code + asked + ends], capture_output=True, text=True, check=True)
