@@ -51,8 +51,8 @@ def _opening(surface: SurfaceMesh, hollow: dict[int, Cylinder], index: int) -> f
     around = []
     for i, other in hollow.items():
         away = other.center - wall.center
-        shifted = np.linalg.norm(away - wall.axis * (away @ wall.axis))
-        tilted = np.linalg.norm(np.cross(wall.axis, other.axis))
+        shifted = float(np.linalg.norm(away - wall.axis * (away @ wall.axis)))
+        tilted = float(np.linalg.norm(np.cross(wall.axis, other.axis)))
         if max(tilted, shifted / wall.radius, abs(other.radius / wall.radius - 1.0)) > SAME_CIRCLE:
             continue
         common = min(high, along[i].max()) - max(low, along[i].min())

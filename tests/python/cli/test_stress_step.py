@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from codesign import fem
-from codesign.cli.faces import face_documents, print_faces
 from codesign.cli.stress import stress_document
+from codesign.cli.stress_file import face_documents, print_faces
 from codesign.errors import CodesignError
 from codesign.fem.holes import cylinder_of, holes
 from codesign.fem.step import load_step

@@ -11,6 +11,10 @@ from codesign.cli.console import print_json, print_stress
 from codesign.cli.options import JsonOption
 
 commands = typer.Typer()
+LOADS = (
+    "Total force FX FY FZ or bearing FX FY FZ (a pin in a bore) in N, moment MX MY MZ in N m, "
+    "pressure P or traction TX TY TZ in MPa."
+)
 ExclusionOption = Annotated[
     float | None,
     typer.Option(
@@ -33,11 +37,7 @@ def stress(
     fix: Annotated[list[str], typer.Option(metavar="SEL", help="Held in all directions, or 'SEL: xz' in two.")],
     load: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="'SEL: LOAD'",
-            help="Total force FX FY FZ or bearing FX FY FZ (a pin in a bore) in N, moment MX MY MZ in N m, "
-            "pressure P or traction TX TY TZ in MPa.",
-        ),
+        typer.Option(metavar="'SEL: LOAD'", help=LOADS),
     ] = None,
     acceleration: Annotated[
         str | None, typer.Option(metavar="'AX AY AZ'", help="Of the whole part, as gravity: m/s².")
@@ -99,7 +99,7 @@ def faces(
     as_json: JsonOption = False,
 ) -> int:
     """Faces of a STEP file for the selections of `codesign stress`: name or number, type, radius, area, middle."""
-    from codesign.cli.faces import face_documents, print_faces
+    from codesign.cli.stress_file import face_documents, print_faces
 
     documents = face_documents(part)
     if as_json:
