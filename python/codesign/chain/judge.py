@@ -189,10 +189,9 @@ def misses(document: Document, limit: Limit, value: float | None) -> list[str]:
 
 def _missed(limit: Limit, label: str, value: float | None) -> str:
     bound = limit.least if limit.least is not None else limit.most
-    factor, unit = limit.quantity.factor, f" {limit.quantity.unit}" if limit.quantity.unit else ""
     side = "below" if limit.least is not None else "above"
     words = label[:1].lower() + label[1:]
-    return f"{words} {factor * (value or 0.0):.4g}{unit} {side} {factor * (bound or 0.0):g}{unit}"
+    return f"{words} {limit.quantity.text(value or 0.0, 4)} {side} {limit.quantity.text(bound or 0.0, 6)}"
 
 
 def loss(flight: Mapping[str, Any]) -> str:

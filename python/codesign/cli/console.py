@@ -13,6 +13,7 @@ from rich.text import Text
 
 from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import least_infeasible
+from codesign.problem.quantities import FAMILY, Quantity, quantity
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -53,7 +54,7 @@ def print_evaluation(evaluation: Evaluation) -> None:
     table = Table(show_header=False, box=None, pad_edge=False)
     for group in (evaluation.objectives, evaluation.constraints):
         for key, value in group.items():
-            table.add_row(key, f"{value:.5g}")
+            table.add_row(key, _quantity(evaluation, key).text(value))
     for name, part in evaluation.parts.items():
         table.add_row(
             name,
@@ -72,6 +73,13 @@ def print_evaluation(evaluation: Evaluation) -> None:
             table.add_row(f"flight {key}", shown(evaluation.flight[key], 4))
     table.add_row("seconds", "  ".join(f"{k} {v:.2f}" for k, v in evaluation.seconds.items()))
     out.print(table)
+
+
+def _quantity(evaluation: Evaluation, key: str) -> Quantity:
+    """What is known of a number of an evaluation; its objectives tell the family that they are of."""
+    families = evaluation.objective_families.items()
+    of = (family for family, values in families if key in FAMILY and values.get(key) == evaluation.objectives.get(key))
+    return quantity(key, next(of, "rms"))
 
 
 def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
@@ -99,7 +107,8 @@ def print_tolerances(found: Tolerances) -> None:
         table = Table("", "least", "5 %", "median", "95 %", "largest", box=None, pad_edge=False)
         for name, spread in made.numbers.items():
             row = (spread.least, spread.low, spread.median, spread.high, spread.most)
-            table.add_row(name, *(f"{value:.5g}" for value in row))
+            known = quantity(name)
+            table.add_row(_head(known), *(f"{known.shown(value):.5g}" for value in row))
         out.print(table)
         for reason in made.reasons:
             out.print(f"  {reason}")
@@ -197,15 +206,22 @@ def _print_front(front: Sequence[Record]) -> None:
 def _front_table(rows: Sequence[Record], variables: Sequence[str]) -> Table:
     """Number in the run, some of the variables, objectives, smallest safety factor of all parts."""
     table = Table(title=f"Pareto front, {len(rows)} designs", title_justify="left")
-    for name in ("design", *variables, *rows[0].evaluation.objectives, "safety_factor"):
+    known = [_quantity(rows[0].evaluation, key) for key in rows[0].evaluation.objectives]
+    for name in ("design", *variables, *map(_head, known), "safety_factor"):
         table.add_column(name, justify="right")
     for record in rows[:MOST_ROWS]:
         evaluation = record.evaluation
         factors = [part["safety_factor"] for part in evaluation.parts.values() if part.get("safety_factor") is not None]
-        numbers = (*evaluation.objectives.values(), min(factors, default=None))
-        values = (value_text(evaluation.design[name]) for name in variables)
-        table.add_row(str(record.number), *values, *(shown(number, 5) for number in numbers))
+        values = zip(known, evaluation.objectives.values(), strict=True)
+        numbers = (*(each.shown(value) for each, value in values), min(factors, default=None))
+        chosen = (value_text(evaluation.design[name]) for name in variables)
+        table.add_row(str(record.number), *chosen, *(shown(number, 5) for number in numbers))
     return table
+
+
+def _head(known: Quantity) -> str:
+    """A quantity's key with its unit, for tables."""
+    return f"{known.key} [{known.unit}]" if known.unit else known.key
 
 
 def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:

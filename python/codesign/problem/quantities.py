@@ -41,6 +41,14 @@ class Quantity:
         """Label with unit, for axes and column heads."""
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
+    def shown(self, value: float) -> float:
+        """A stored value [SI] in `unit`."""
+        return self.factor * value
+
+    def text(self, value: float, digits: int = 5) -> str:
+        """A stored value [SI] with its unit: `0.8015 mm`."""
+        return f"{self.shown(value):.{digits}g} {self.unit}".rstrip()
+
 
 _TABLE = (
     Quantity(

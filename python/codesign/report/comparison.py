@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from codesign.errors import StoreError
-from codesign.problem.pareto import Hypervolume, non_dominated, objective_rows
+from codesign.problem.pareto import Hypervolume, non_dominated
 from codesign.report.pareto import Matrix
 from codesign.storage.runs import load_run
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ComparedRun:
-    """The front of another run. ids: numbers of its designs; values: (n, m) their objectives, those of the run.
+    """The front of another run. ids: numbers of its designs; values: (n, m) their objectives, as `ReportData.values`.
 
     evaluated: designs of the whole run.
     """
@@ -67,7 +67,7 @@ def load_comparison(directory: Path, run: ReportData, study_name: str = "") -> C
         name=name if name != study_name else Path(directory).resolve().name,
         evaluated=len(other.search_records),
         ids=tuple(-1 if record.number is None else record.number for record in front),
-        values=objective_rows((record.evaluation for record in front), run.keys),
+        values=np.array([run.vector(record.evaluation) for record in front]),
     )
 
 

@@ -92,12 +92,12 @@ class ReportData:
         return tuple(o.key for o in self.objectives)
 
     def vector(self, evaluation: Evaluation) -> Matrix:
-        """Objectives (m,) of an evaluation; NaN where it has none."""
-        return np.array([evaluation.objectives.get(key, np.nan) for key in self.keys])
+        """Objectives (m,) of an evaluation, each in the unit that its quantity is shown in; NaN where it has none."""
+        return np.array([o.shown(evaluation.objectives.get(o.key, np.nan)) for o in self.objectives])
 
     @cached_property
     def values(self) -> Matrix:
-        """Objectives (n, m) of the entries; NaN where a design has none."""
+        """Objectives (n, m) of the entries, in the units of `objectives`; NaN where a design has none."""
         return np.array([self.vector(e.evaluation) for e in self.entries]).reshape(-1, len(self.objectives))
 
     @cached_property
@@ -121,7 +121,7 @@ class ReportData:
 
     @cached_property
     def baseline_vector(self) -> Matrix | None:
-        """Objectives (m,) of the baseline, None if it has not all of them."""
+        """Objectives (m,) of the baseline in the units of `objectives`, None if it has not all of them."""
         if self.baseline is None:
             return None
         vector = self.vector(self.baseline)

@@ -30,7 +30,7 @@ def facts(study: Any, evaluation: Evaluation, original: Evaluation | None) -> st
         value = evaluation.objectives[objective.key]
         before = original.objectives.get(objective.key) if original is not None else None
         change = f" ({percent((value - before) / abs(before))})" if before and original is not evaluation else ""
-        lines.append(f"{objective.label}: **{number(value)}** {objective.unit}{change}")
+        lines.append(f"{objective.label}: **{number(objective.shown(value))}** {objective.unit}{change}")
     for name, part in evaluation.parts.items():
         if part.get("safety_factor"):
             lines.append(f"{words(name)}: safety factor **{number(part['safety_factor'], 3)}**, {part['mass']:.3f} kg")

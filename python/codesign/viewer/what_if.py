@@ -74,17 +74,16 @@ def said(run: ReportData, models: WhatIf, grid: tuple[int, ...]) -> str:
 
 def _line(run: ReportData, key: str, prediction: Prediction, error: float, poor: bool) -> str:
     shown = shown_quantity(run, key)
-    factor = 1.0 if key in run.keys else shown.factor
     band = ""
     if prediction.bands:
-        low, high = (number(factor * end) for end in prediction.bands[-1])
+        low, high = (number(shown.shown(end)) for end in prediction.bands[-1])
         band = f" (90 %: {low} … {high})"
     limit = ""
     if key in run.limits and key not in run.keys:
         sign, least = run.limits[key]
-        limit = f", limit {sign} {np.round(factor * least, 9):g}"
+        limit = f", limit {sign} {np.round(shown.shown(least), 9):g}"
     trust = " **unreliable**" if poor else ""
     return (
-        f"{shown.label}: **{number(factor * prediction.mean)}** {shown.unit}{band}{limit}; "
+        f"{shown.label}: **{number(shown.shown(prediction.mean))}** {shown.unit}{band}{limit}; "
         f"leave-one-out {100 * error:.2g} % of the spread{trust}"
     )

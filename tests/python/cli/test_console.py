@@ -44,6 +44,17 @@ def test_a_run_without_a_feasible_design_names_the_least_infeasible(run, monkeyp
     assert json.loads(capsys.readouterr().out)["least_infeasible"]["design"] == {"reach": 1.3}
 
 
+def test_numbers_are_printed_in_the_units_they_are_named_with(run, monkeypatch, capsys):
+    found = Evaluation({"reach": 1.0}, "feasible", None, {"mass": 0.0894, "max_displacement": 0.0008015}, seconds={})
+    console.print_evaluation(found)
+    told = " ".join(capsys.readouterr().out.split())
+    assert "mass 0.0894 kg" in told and "max_displacement 0.8015 mm" in told
+    monkeypatch.setattr(Run, "front", property(lambda _: [Record(1, 0, (0,), "", found)]))
+    console.print_run(run, as_json=False)
+    told = capsys.readouterr().out
+    assert "mass [kg]" in told and "max_displacement [mm]" in told and "0.8015" in told
+
+
 def test_a_run_whose_designs_all_failed_says_why(run, monkeypatch, capsys):
     designs = [Evaluation.failure({"reach": k}, "MeshError: no mesh" if k else "time limit") for k in range(3)]
     assert console.print_run(replaced(run, designs, monkeypatch), as_json=False) == 1

@@ -86,7 +86,7 @@ def _row(
         "x": [evaluation.design[v.name] for v in run.variables],
         "status": STATUS[evaluation.status],
         "reason": evaluation.reason,
-        "f": [_rounded(evaluation.objectives.get(k)) for k in run.keys],
+        "f": [_rounded(value) for value in run.vector(evaluation)],
         "c": [_shown(quantity(k), evaluation.constraints) for k in constraints],
         "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
@@ -114,7 +114,7 @@ def _part_words(run: ReportData, name: str) -> dict[str, str]:
 
 def _shown(quantity: Quantity, numbers: Mapping[str, Any]) -> float | None:
     value = numbers.get(quantity.key)
-    return None if value is None else _rounded(quantity.factor * value)
+    return None if value is None else _rounded(quantity.shown(value))
 
 
 def _rounded(value: Any) -> float | None:
@@ -136,7 +136,7 @@ def _constraint(run: ReportData, key: str) -> dict[str, Any]:
     rule = ""
     if key in run.limits:
         sign, limit = run.limits[key]
-        rule = f"{ {'>=': '≥', '<=': '≤'}[sign] } {shown.factor * limit:g}"
+        rule = f"{ {'>=': '≥', '<=': '≤'}[sign] } {shown.shown(limit):g}"
     return {
         "key": key,
         "label": shown.label,

@@ -94,7 +94,7 @@ def _flights(run: ReportData, validation: Validation) -> str:
             for role in validation.roles:
                 flight = calm.get((role, trajectory))
                 value = flight.objectives.get(objective.key) if flight is not None else None
-                cells.append(f"<td>{number(value) if value is not None else 'lost'}</td>")
+                cells.append(f"<td>{number(objective.shown(value)) if value is not None else 'lost'}</td>")
             rows.append(f"<tr><td>{escape(words(trajectory))}: {escape(objective.title)}</td>{''.join(cells)}</tr>")
     return (
         '<details><summary>All calm flights in numbers</summary><div class="sideways"><table class="figures">'

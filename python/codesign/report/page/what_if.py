@@ -68,7 +68,6 @@ def _variable(variable: Variable) -> dict[str, Any]:
 def _number(run: ReportData, models: WhatIf, number: NumberModel) -> dict[str, Any]:
     process, objective = number.process, number.key in run.keys
     shown = shown_quantity(run, number.key)
-    factor = 1.0 if objective else shown.factor
     evaluations = [run.entries[models.entries[row]].evaluation for row in number.rows]
     values = [float((e.objectives if objective else e.constraints)[number.key]) for e in evaluations]
     sign, limit = run.limits.get(number.key, ("", 0.0))
@@ -76,9 +75,9 @@ def _number(run: ReportData, models: WhatIf, number: NumberModel) -> dict[str, A
         "key": number.key,
         "label": shown.label,
         "unit": shown.unit,
-        "factor": factor,
+        "factor": shown.factor,
         "objective": run.keys.index(number.key) if objective else None,
-        "limit": [sign, factor * limit] if sign and not objective else None,
+        "limit": [sign, shown.shown(limit)] if sign and not objective else None,
         "rows": number.rows.tolist(),
         "values": [float(f"{value:.9g}") for value in values],
         "lengths": _lengths(models, process.column_lengths),

@@ -1,0 +1,50 @@
+"""Numbers of the report stand in the units that are written beside them."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from codesign.problem.design_space import Variable
+from codesign.problem.evaluation import Evaluation
+from codesign.problem.quantities import quantity
+from codesign.report.data import Entry, ReportData
+from codesign.report.page.document import page_document
+from codesign.report.page.summary import summary
+
+KEYS = ("mass", "max_displacement")
+
+
+def designs(*objectives: tuple[float, ...]) -> ReportData:
+    """A run of designs with masses [kg] and displacements [m]."""
+    return ReportData(
+        directory=Path("run"),
+        title="Bracket",
+        description="",
+        variables=(Variable("wall", 1, 9, 1, "mm"),),
+        objectives=tuple(quantity(key) for key in KEYS[: len(objectives[0])]),
+        entries=tuple(
+            Entry(k, Evaluation({"wall": k + 1}, "feasible", None, dict(zip(KEYS, values, strict=False))))
+            for k, values in enumerate(objectives)
+        ),
+    )
+
+
+def test_a_displacement_in_millimeters_is_millimeters_everywhere():
+    run = designs((0.08, 0.0008015), (0.09, 0.0006))
+    run = replace(run, baseline=run.entries[1].evaluation)
+    assert run.values[:, 1] == pytest.approx([0.8015, 0.6])
+    assert run.baseline_vector == pytest.approx([0.09, 0.6])
+    low, high = run.view(1)
+    assert low < 0.6 and high > 0.8015 and high < 1.0
+    document = page_document(run)
+    assert document["objectives"][1]["unit"] == "mm"
+    assert [row["f"] for row in document["designs"]] == [[0.08, 0.8015], [0.09, 0.6]]
+    assert ">0.8015</dd><dd><p>mm</p>" in summary(replace(run, entries=run.entries[:1], baseline=None))
+
+
+def test_a_text_of_a_quantity_has_its_unit():
+    assert quantity("max_displacement").text(0.0008015) == "0.8015 mm"
+    assert quantity("parts.arm.max_displacement").text(0.0008015) == "0.8015 mm"
+    assert quantity("-first_frequency").text(-80.0) == "-80 Hz"
+    assert quantity("safety_factor").text(2.7) == "2.7"
