@@ -1,19 +1,17 @@
 """How much of the true front searches find: a sub-grid is swept whole, then searched with a small budget.
 
   python benchmarks/optimizer/ground_truth.py --study ironcub_paper --counts 14 7 5 6 --evaluations 400 --seeds 5
-  python benchmarks/optimizer/ground_truth.py --study ironcub_paper --algorithms surrogate --evaluations 150 --lazy
+  python benchmarks/optimizer/ground_truth.py --study ironcub_paper --algorithms surrogate --evaluations 150
   python benchmarks/optimizer/ground_truth.py --study smooth --counts 14 7 5 6            (analytic, a minute)
 
 Prints a line a seed: hypervolume of the front found over that of the true front, and how many of its designs were
 found. The box of the hypervolume spans all feasible designs of the sub-grid. The searches take their evaluations from
-the cache that the sweep filled. --lazy: the sweep evaluates whole only what can be on the front (a random search to the
-end of the grid), so that the box spans what flies, and searches are as they are by themselves.
+the cache that the sweep filled.
 """
 
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from pathlib import Path
 
@@ -38,26 +36,18 @@ def main() -> None:
     parser.add_argument("--evaluations", type=int, default=400)
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--lazy", action="store_true")
     parser.add_argument("--out", type=Path, default=Path("runs/ground-truth"))
     given = parser.parse_args()
     study = coarse(standin(problem=given.study) if given.study in PROBLEMS else load_problem(given.study), given.counts)
-    folder = given.out / f"{study.name}-{study.hash}{'-lazy' if given.lazy else ''}"
+    folder = given.out / f"{study.name}-{study.hash}"
     cache = folder / "cache.sqlite"
     with ProgressBar("sweep") as bar:
         if (folder / "sweep" / DATABASE).exists():
             whole = resume(folder / "sweep", workers=given.workers, progress=bar)
-        elif given.lazy:
-            everywhere = {"algorithm": "random", "population": 25, "evaluations": math.prod(given.counts), "lazy": True}
-            whole = optimize(
-                study, out=folder / "sweep", workers=given.workers, cache=cache, progress=bar, **everywhere
-            )
         else:
             whole = sweep(study, given.counts, out=folder / "sweep", workers=given.workers, cache=cache, progress=bar)
     everything = objective_rows(whole.evaluations, whole.objectives)
-    flown = [e for e in whole.evaluations if e.status in ("feasible", "skipped")]
-    table = np.array([[e.objectives[name] for name in whole.objectives] for e in flown])
-    box, true_front = Hypervolume(table), everything[non_dominated(everything)]
+    box, true_front = Hypervolume(everything), everything[non_dominated(everything)]
     best = box.of(true_front)
     print(
         f"{len(whole.evaluations)} designs, {whole.counts}; true front: {len(true_front)}; wall {whole.seconds:.0f} s"
@@ -72,14 +62,7 @@ def main() -> None:
             else:
                 budget = {"population": given.population, "evaluations": given.evaluations}
                 run = optimize(
-                    study,
-                    out=out,
-                    algorithm=algorithm,
-                    seed=seed,
-                    workers=given.workers,
-                    cache=cache,
-                    lazy=None if given.lazy else False,
-                    **budget,
+                    study, out=out, algorithm=algorithm, seed=seed, workers=given.workers, cache=cache, **budget
                 )
             found = objective_rows(run.evaluations, run.objectives)
             hits = len({tuple(row) for row in found} & {tuple(row) for row in true_front})
