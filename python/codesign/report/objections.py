@@ -79,6 +79,12 @@ def _parts(evaluation: Evaluation, limits: Limits) -> list[Objection]:
     return found
 
 
+def singular(kind: str) -> str:
+    """An objection's kind said of one design: `have a stress …` -> `has a stress …`."""
+    verb, _, rest = kind.partition(" ")
+    return f"{ {'have': 'has', 'are': 'is'}.get(verb, verb + 's') } {rest}"
+
+
 def least_factor(name: str, part: Mapping[str, Any], limits: Limits) -> float | None:
     """Safety factor that is asked of a part: of the load case that governs it, or of all."""
     asked = limits.get(f"parts.{name}.cases.{part.get('load_case')}.safety_factor") or limits.get("safety_factor")

@@ -11,11 +11,12 @@ import numpy as np
 
 from codesign.problem.quantities import words
 from codesign.report.data import ReportData
-from codesign.report.objections import UNSETTLED, least_factor
+from codesign.report.objections import UNSETTLED, least_factor, singular
 from codesign.report.words import EQUAL, combinations, listed, percent, plural
 from codesign.units import MILLIMETER
 
 CLEARLY = 0.1  # logarithm of the product of the objectives: a tenth better in one of them, say
+CLOSER = "codesign evaluate with --confirm analyzes its parts in full on finer meshes."
 SETTLED = 0.01  # of the front's hypervolume: what the last quarter of a settled search adds at most
 
 
@@ -23,6 +24,8 @@ def why(run: ReportData) -> str:
     """Why the recommended design is recommended, and how it was chosen."""
     if run.recommended is None:
         return ""
+    if len(run.choices) == 1 and len(run.objectives) == 1:
+        return "" if passed_over(run) else f"No design that may be built has less: {_best(run, run.recommended)}."
     if len(run.choices) == 1:
         alone = "feasible design" if run.counts["feasible"] == 1 else "design that may be built"
         return f"It is the only {alone} that no other beats. {left_out(run)}".rstrip()
@@ -47,10 +50,37 @@ def left_out(run: ReportData) -> str:
     others = [i for i in run.front if i not in run.choices]
     if not others:
         return ""
+    if len(others) == 1:
+        against = listed([objection.text for objection in run.objections(others[0])])
+        return f"Design {run.entries[others[0]].id}, among the best found, was left out: {against}."
     kinds = Counter(kind for i in others for kind in {objection.kind for objection in run.objections(i)})
-    because = listed([f"{number} {kind}" for kind, number in kinds.most_common()])
-    found, were = plural(len(run.front), "best compromise"), "was" if len(others) == 1 else "were"
-    return f"{len(others)} of the {found} found {were} left out: {because}."
+    because = listed([f"{number} {kind if number > 1 else singular(kind)}" for kind, number in kinds.most_common()])
+    found = plural(len(run.front), "best compromise")
+    return f"{len(others)} of the {found} found were left out: {because}."
+
+
+def passed_over(run: ReportData) -> str:
+    """Which designs have less of the only objective than the recommended one, the best first, and why not they."""
+    if run.recommended is None or len(run.objectives) != 1:
+        return ""
+    values = run.values[:, 0]
+    better = np.flatnonzero(run.feasible & (values < values[run.recommended]))
+    if not len(better):
+        return ""
+    best = int(better[np.argmin(values[better])])
+    against = listed([objection.text for objection in run.objections(best)])
+    more = f" So are {len(better) - 1} more that have less than it." if len(better) > 2 else ""
+    more = " So is 1 more that has less than it." if len(better) == 2 else more
+    return (
+        f"Design {run.entries[best].id} has less, {_best(run, best)} instead of {_best(run, run.recommended)}, and is "
+        f"passed over: {against}.{more}"
+    )
+
+
+def _best(run: ReportData, position: int) -> str:
+    """The only objective of a design, with its unit."""
+    (objective,) = run.objectives
+    return objective.text(run.entries[position].evaluation.objectives[objective.key], 4)
 
 
 def price(run: ReportData) -> str:
@@ -165,7 +195,7 @@ def remedy(run: ReportData) -> str:
     """What to do about an objection to the recommended design that a closer analysis may lift."""
     if run.recommended is None or not any(o.kind in UNSETTLED for o in run.objections(run.recommended)):
         return ""
-    return "codesign evaluate with --confirm analyzes its parts in full on finer meshes."
+    return CLOSER
 
 
 def nothing_to_build(run: ReportData) -> str:
@@ -178,6 +208,8 @@ def nothing_to_build(run: ReportData) -> str:
 
 def unchecked(run: ReportData) -> str:
     """What the study does not measure although it may forbid building a design."""
+    if not any(entry.evaluation.flight for entry in run.entries):
+        return ""
     keys = {key for entry in run.entries for key in entry.evaluation.constraints}
     if "body_clearance" in keys:
         return (

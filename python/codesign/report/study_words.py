@@ -8,7 +8,7 @@ from dataclasses import replace
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import PartWords
 from codesign.report.words import listed, plural
-from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
+from codesign.study.config import FemConfig, LoadCaseConfig, PartConfig, StudyConfig
 from codesign.study.flight_config import JointGroupConfig
 from codesign.study.load_config import LOAD_KINDS, LoadConfig
 from codesign.study.sections import Vector3
@@ -48,8 +48,14 @@ def part_words(config: StudyConfig) -> dict[str, PartWords]:
 
 def _load_case(config: StudyConfig, part: PartConfig) -> str:
     loads = "; ".join(_case(case, len(part.load_cases) > 1) for case in part.load_cases)
-    held = f"face {listed(part.supports)} held" if part.supports else "not held"
-    return f"{loads}, {held} (load model “{config.fem.load}”, support model “{config.fem.support}”)"
+    held = (
+        f"{'face' if len(part.supports) == 1 else 'faces'} {listed(part.supports)} held"
+        if part.supports
+        else "not held"
+    )
+    models = [("load", config.fem.load, FemConfig().load), ("support", config.fem.support, FemConfig().support)]
+    chosen = listed([f"{kind} model “{name}”" for kind, name, usual in models if name != usual])
+    return f"{loads}, {held}" + (f" ({chosen})" if chosen else "")
 
 
 def _case(case: LoadCaseConfig, named: bool) -> str:

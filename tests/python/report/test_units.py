@@ -11,6 +11,7 @@ from codesign.problem.quantities import quantity
 from codesign.report.data import Entry, ReportData
 from codesign.report.page.document import page_document
 from codesign.report.page.summary import summary
+from codesign.report.recommendation import left_out, passed_over
 
 KEYS = ("mass", "max_displacement")
 
@@ -48,3 +49,27 @@ def test_a_text_of_a_quantity_has_its_unit():
     assert quantity("parts.arm.max_displacement").text(0.0008015) == "0.8015 mm"
     assert quantity("-first_frequency").text(-80.0) == "-80 Hz"
     assert quantity("safety_factor").text(2.7) == "2.7"
+
+
+def test_a_better_design_that_is_passed_over_is_named_in_the_headline():
+    run = designs((0.08799,), (0.08944,), (0.095,))
+    better, *others = run.entries
+    doubtful = replace(better.evaluation, parts={"arm": {"tolerance_reached": False}})
+    run = replace(run, entries=(replace(better, evaluation=doubtful), *others))
+    assert run.recommended == 1
+    told = passed_over(run)
+    assert told.startswith(
+        "Design 0 has less, 0.08799 kg instead of 0.08944 kg, and is passed over: the stress of the arm"
+    )
+    page = summary(run)
+    assert "Candidate: design 1" in page and "Build design" not in page
+    assert page.index(told[:40]) < page.index('class="values"')
+    assert left_out(run).startswith("Design 0, among the best found, was left out: the stress of the arm")
+
+
+def test_the_best_of_a_single_objective_is_recommended():
+    run = designs((0.09,), (0.08799,), (0.095,))
+    assert run.recommended == 1
+    assert passed_over(run) == ""
+    assert "Build design 1" in summary(run)
+    assert "No design that may be built has less: 0.08799 kg." in summary(run)

@@ -85,9 +85,12 @@ def _build(run: ReportData) -> str:
         ]
     )
     against = recommendation.reservations(run)
-    title = f"Candidate: design {entry.id}" if against else f"Build design {entry.id}"
+    better = recommendation.passed_over(run)
+    title = f"Candidate: design {entry.id}" if against or better else f"Build design {entry.id}"
     open_points = "".join(f"<li>{escape(text)}</li>" for text in against)
     points = f'<p class="bad">Not to be built yet:</p><ul class="bad">{open_points}</ul>' if against else ""
+    if better:
+        points = f'<p class="bad">{escape(f"{better} {recommendation.CLOSER}")}</p>{points}'
     said = [
         recommendation.remedy(run),
         recommendation.why(run),
