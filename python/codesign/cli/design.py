@@ -86,10 +86,15 @@ def export_design(
             _write_meshes(analyses, folder / "stress")
         write_text(folder / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1))
         write_text(folder / "bom.csv", order.bill_of_materials())
-        write_text(folder / "README.md", order.page(evaluation, models))
-        files = [str(path.relative_to(folder)) for path in files_in(folder)] + [MANIFEST]
+        write_text(folder / "README.md", order.page(evaluation, models, _written(folder)))
+        files = [*_written(folder), MANIFEST]
         write_text(folder / MANIFEST, order.manifest(evaluation, models, files))
     return [out / file for file in sorted(files)]
+
+
+def _written(folder: Path) -> list[str]:
+    """Files in a folder, relative to it."""
+    return [path.relative_to(folder).as_posix() for path in files_in(folder)]
 
 
 def _computed(

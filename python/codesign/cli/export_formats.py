@@ -69,6 +69,14 @@ def parse_frames(text: str) -> Frames:
     raise ExportError(f"--frames: {text!r} is none of {', '.join(FRAMES)}")
 
 
-def units_of(formats: Collection[str]) -> dict[str, str]:
-    """Units of the files that are written, by pattern."""
-    return {files: unit for files, (unit, kinds) in UNITS.items() if any(kind in formats for kind in kinds)}
+def units_of(formats: Collection[str], files: Collection[str]) -> dict[str, str]:
+    """Units of the files that are written, by pattern; of the robot's only where there are some.
+
+    formats: asked for. files: written, relative to the folder.
+    """
+    folders = {file.partition("/")[0] for file in files if "/" in file}
+    return {
+        pattern: unit
+        for pattern, (unit, kinds) in UNITS.items()
+        if any(kind in formats for kind in kinds) and ("/" not in pattern or pattern.partition("/")[0] in folders)
+    }

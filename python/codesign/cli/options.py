@@ -26,7 +26,7 @@ def complete_assignment(context: typer.Context, incomplete: str) -> list[str]:
     return [f"{name}=" for name in study.space.names if f"{name}=".startswith(incomplete)]
 
 
-STUDY_HELP = "A shipped study's name or the path of a study.toml."
+STUDY_HELP = "A shipped study's name, or the path of a study.toml or of its folder."
 StudyOption = Annotated[str, typer.Option("--study", "-s", help=STUDY_HELP, autocompletion=complete_study)]
 StudyArgument = Annotated[str, typer.Argument(help=STUDY_HELP, autocompletion=complete_study)]
 SetOption = Annotated[

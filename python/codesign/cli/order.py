@@ -7,8 +7,9 @@ import hashlib
 import io
 import json
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -127,7 +128,7 @@ class Order:
             "objectives": evaluation.objectives,
             "constraints": evaluation.constraints,
             "parts": [self._part(part, evaluation, models) for part in distinct_parts(self.components)],
-            "units": units_of(self.formats),
+            "units": units_of(self.formats, files),
             "not_stated": OPEN,
             "license": LICENSE,
             "files": sorted(files),
@@ -160,8 +161,8 @@ class Order:
             "revision": self.revision,
         }
 
-    def page(self, evaluation: Evaluation, models: Mapping[str, str]) -> str:
-        """The same for people, as Markdown."""
+    def page(self, evaluation: Evaluation, models: Mapping[str, str], written: Collection[str]) -> str:
+        """The same for people, as Markdown. written: files so far, relative to the folder."""
         study = self.study
         head = [
             f"# {study.title}: parts to be made\n",
@@ -195,14 +196,16 @@ class Order:
                     if words.warning
                 ),
                 f"`bom.csv` is the second table for programs, `manifest.json` all of this. {self._cad_words()}\n",
-                *self._robot_words(),
+                *_robot_words(written),
                 "## Strength\n",
                 *_table(
                     ["part", "load case", "model", "safety factor", "peak stress"], self._strength(evaluation, models)
                 ),
                 *([STRESS_FILES] if "vtu" in self.formats else []),
                 "## Units\n",
-                *_table(["files", "units"], [[f"`{files}`", unit] for files, unit in units_of(self.formats).items()]),
+                *_table(
+                    ["files", "units"], [[f"`{kind}`", unit] for kind, unit in units_of(self.formats, written).items()]
+                ),
                 f"Not stated, to be agreed with the workshop: {OPEN.partition(':')[0]}.\n",
                 f"{LICENSE}\n",
             ]
@@ -212,14 +215,14 @@ class Order:
         """Path of a part's file; "" if it is not written."""
         return f"cad/{part.name}.{kind}" if kind in self.formats else ""
 
+    @property
+    def _on_robot(self) -> str:
+        return " on the robot" if self.study.config.robot is not None else ""
+
     def _cad_words(self) -> str:
         assembly = " and ".join(f"`cad/assembly.{kind}`" for kind in ("step", "glb") if kind in self.formats)
         beside = "In `cad/parts.3mf` all pieces lie side by side. " if "3mf" in self.formats else ""
-        return beside + (f"In {assembly} they are in their places on the robot." if assembly else "")
-
-    def _robot_words(self) -> list[str]:
-        files = [f"`robot/{file}`: {words}" for kinds, file, words in ROBOT_FILES if set(kinds) & set(self.formats)]
-        return ["## Robot\n", *(f"- {line}" for line in files), ""] if files else []
+        return beside + (f"In {assembly} they are in their places{self._on_robot}." if assembly else "")
 
     def _strength(self, evaluation: Evaluation, models: Mapping[str, str]) -> list[list[Any]]:
         words = part_words(self.study.configured(self.design))
@@ -261,6 +264,17 @@ class Order:
 
     def _material_words(self, part: Part) -> str:
         return f"{self._config(part).material}, {part.density:g} kg/m³"
+
+
+def _robot_words(files: Collection[str]) -> list[str]:
+    """What the files of the robot hold; nothing of a study of parts alone, which writes none."""
+    folders = {PurePosixPath(file).parts[0] for file in files}
+    lines = [
+        f"- `robot/{file}`: {words}"
+        for _, file, words in ROBOT_FILES
+        if f"robot/{file}" in files or (file == "../ros2" and "ros2" in folders)
+    ]
+    return ["## Robot\n", *lines, ""] if lines else []
 
 
 def _original(part: Part) -> Part:

@@ -78,6 +78,11 @@ class FrontTracker:
         self._front = np.empty((0, len(self._names)))
         self._hypervolume: Hypervolume | None = None
 
+    @property
+    def best(self) -> float | None:
+        """Lowest value of the only objective; None before any design is feasible, and where there are several."""
+        return float(self._front.min()) if len(self._names) == 1 and len(self._front) else None
+
     def add(self, evaluations: Iterable[Evaluation]) -> float | None:
         """Takes a batch of new evaluations into account; returns the hypervolume, None before any is feasible."""
         values = objective_rows(evaluations, self._names)

@@ -17,6 +17,7 @@ from codesign.execution.pool import Executor, Outcome, Task
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import FrontTracker, rival_of
 from codesign.problem.protocols import LazyProblem, PartCache, Problem, Rival
+from codesign.problem.quantities import quantity
 from codesign.search.base import Grid, Repeatable
 from codesign.search.plan import Plan
 from codesign.search.progress import Progress
@@ -257,6 +258,13 @@ class SearchDriver:
         self._results[record.grid] = record.evaluation
         self._counts[record.evaluation.status] += 1
 
+    def _best(self) -> str | None:
+        """The best value of a single objective with its unit; empty before any, None where there are several."""
+        if len(self._study.objectives) != 1:
+            return None
+        best = self._tracker.best
+        return "" if best is None else quantity(self._study.objectives[0]).text(best)
+
     def _report(self) -> None:
         if self._notify is None:
             return
@@ -270,6 +278,7 @@ class SearchDriver:
             seconds=time.monotonic() - self._began,
             generation=len(self._history),
             hypervolume=self._history[-1] if self._history else None,
+            best=self._best(),
             ended=self._ended,
         )
         self._notify(state)

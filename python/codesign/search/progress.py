@@ -10,7 +10,10 @@ from typing import Any, Self
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """What a run has done so far; `seconds` and `evaluated_here` count this session only."""
+    """What a run has done so far; `seconds` and `evaluated_here` count this session only.
+
+    best: value of a single objective in words, "" before there is one; None where there are several objectives.
+    """
 
     feasible: int
     infeasible: int
@@ -23,6 +26,7 @@ class Progress:
     skipped: int = 0
     generation: int = 0
     hypervolume: float | None = None
+    best: str | None = None
     ended: str | None = None
 
     @property
@@ -81,8 +85,9 @@ class ProgressBar:
 
 
 def describe(progress: Progress) -> str:
-    """One line: counts, rate, hypervolume, time left."""
+    """One line: counts, rate, hypervolume (of a single objective the best value), time left."""
     hypervolume = "—" if progress.hypervolume is None else f"{progress.hypervolume:.4f}"
+    reached = f"hypervolume {hypervolume}" if progress.best is None else f"best {progress.best or '—'}"
     left = progress.seconds_left
     parts = [
         f"{progress.done}/{progress.total}",
@@ -90,7 +95,7 @@ def describe(progress: Progress) -> str:
         f"feasible {progress.feasible}",
         f"infeasible {progress.infeasible}",
         f"failed {progress.failed}",
-        f"hypervolume {hypervolume}",
+        reached,
         f"left {duration(left)}" if left is not None else "left —",
     ]
     if progress.skipped:

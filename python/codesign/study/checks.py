@@ -5,17 +5,20 @@ Every check yields pairs (key, reason); a loader raises the first, `codesign che
 
 from __future__ import annotations
 
+import difflib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from codesign.names import nearest
 from codesign.parts.materials import material_names
 from codesign.parts.part import Part, parameter_units
-from codesign.problem.quantities import QUANTITIES, REDUCTIONS
+from codesign.problem.quantities import OF_A_PART, QUANTITIES, REDUCTIONS
 from codesign.study.choices import is_number
 from codesign.study.config import LimitConfig, PartConfig, StudyConfig, VariableConfig
 
 MOST_OBJECTIVES = 6
+MOST_NUMBERS = 8  # named instead of an unknown one
+REDUCED_PARTS = ("sum(parts.", "min(parts.", "max(parts.")  # paths of numbers that every study has
 MOST_LEVELS = 1_000_000  # grid values of a variable
 
 Problem = tuple[str, str]
@@ -199,7 +202,7 @@ def _unknown_number(config: StudyConfig, name: str) -> str | None:
     path = rest.removesuffix(")") if bracket else name
     first, _, rest = path.partition(".")
     if first not in ("parts", "flight", "objective_families") or not rest:
-        return f"no number {name!r}; {nearest(name, [*QUANTITIES, 'parts.…', 'flight.…'])}"
+        return f"no number {name!r}; {_nearest_numbers(config, name)}"
     if "*" in path.split(".") and not bracket:
         return f"{name!r}: a path with * needs min(…), max(…) or sum(…) around it"
     part = rest.partition(".")[0]
@@ -207,6 +210,21 @@ def _unknown_number(config: StudyConfig, name: str) -> str | None:
     if first == "parts" and part != "*" and part not in known:
         return f"{name!r}: no part {part!r}; {nearest(part, known)}"
     return None
+
+
+def _nearest_numbers(config: StudyConfig, name: str) -> str:
+    """Numbers that this study has, those first that are most like an unknown one."""
+    own = {key for key, known in QUANTITIES.items() if known.path.startswith(REDUCED_PARTS)}
+    flown = {key for key in QUANTITIES if key not in own and config.flight is not None}
+    of_parts = {f"parts.{part.name}.{key}" for part in config.parts for key in OF_A_PART}
+    like = difflib.SequenceMatcher(b=name)
+
+    def likeness(known: str) -> tuple[float, str]:
+        like.set_seq1(known)
+        return -like.ratio(), known
+
+    ranked = sorted(own | flown | of_parts, key=likeness)
+    return f"nearest of those that this study has: {', '.join(ranked[:MOST_NUMBERS])}"
 
 
 def _clearance_problems(config: StudyConfig) -> Iterator[Problem]:

@@ -21,6 +21,7 @@ MOST_PROBLEMS = 50  # that are told at once
 LARGEST_NUMBER = 1e100  # beyond it squares overflow; NaN is refused by the same comparison
 FIXED_TABLES = ("variables", "objectives")  # what a variable may not set although results depend on it
 UNKNOWN_KEY = re.compile(r"Object contains unknown field `(.*)`")
+WRONG_TYPE = re.compile(r"Expected `(.*)`, got `str`")
 MISSING_KEY = re.compile(r"Object missing required field `(.*)`")
 STEP = re.compile(r"\.?([^.\[\]]+)|\[(\d+|\.\.\.)\]")  # of a place as msgspec writes it: `a.b[0].c[...]`
 
@@ -58,7 +59,9 @@ def type_problems(raw: RawStudy) -> list[str]:
             reason, _, location = str(error).partition(" - at `$")
             steps = _steps(raw, location.rstrip("`"), str(error))
             unknown, missing = UNKNOWN_KEY.fullmatch(reason), MISSING_KEY.fullmatch(reason)
-            if missing is None or _written([*steps, missing[1]]) not in removed:
+            of_whole = not unknown and not missing and not reason.startswith(("Expected", "Invalid"))
+            follows = of_whole and any(place.startswith(f"{_written(steps)}.") for place in removed)
+            if not follows and (missing is None or _written([*steps, missing[1]]) not in removed):
                 found.append(_explained(raw, error))
             if missing is not None and not steps:
                 break  # of the whole file, which is read last
@@ -89,6 +92,8 @@ def _explained(raw: RawStudy, error: msgspec.ValidationError) -> str:
         known = _keys(kind)
         near = closest(found[1], [key for key in node if key not in known])
         reason = f"the key {found[1]!r} is missing" + (f"; is {near!r} meant to be it?" if near else "")
+    elif (found := WRONG_TYPE.fullmatch(reason)) and {"int", "float"} & set(found[1].split(" | ")):
+        reason = f"{_shown(node)} is a text; write the number without quotes"
     elif reason.startswith("Invalid enum value"):
         reason = f"{_shown(node)} is not possible; {nearest(str(node), _choices(kind))}"
     else:

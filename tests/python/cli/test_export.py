@@ -147,8 +147,9 @@ def test_formats_by_name() -> None:
         parse_formats("stl,mjfc")
     with pytest.raises(ExportError, match="name at least one"):
         parse_formats(" ,")
-    assert "robot/flight.*" not in units_of(DEFAULT)
-    assert set(units_of(("csv",))) == {"robot/flight.*", "evaluation.json", "bom.csv"}
+    assert "robot/flight.*" not in units_of(DEFAULT, ["cad/a.stl", "robot/robot.urdf"])
+    assert "robot/*" not in units_of(DEFAULT, ["cad/a.stl"])  # parts alone have no robot
+    assert set(units_of(("csv",), ["robot/flight.csv"])) == {"robot/flight.*", "evaluation.json", "bom.csv"}
     assert set(CAD) < set(FORMATS)
 
 

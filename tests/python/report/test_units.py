@@ -12,6 +12,7 @@ from codesign.report.data import Entry, ReportData
 from codesign.report.page.document import page_document
 from codesign.report.page.summary import summary
 from codesign.report.recommendation import left_out, passed_over
+from codesign.search.progress import Progress, describe
 
 KEYS = ("mass", "max_displacement")
 
@@ -73,3 +74,9 @@ def test_the_best_of_a_single_objective_is_recommended():
     assert passed_over(run) == ""
     assert "Build design 1" in summary(run)
     assert "No design that may be built has less: 0.08799 kg." in summary(run)
+
+
+def test_a_search_with_one_objective_tells_its_best_value():
+    state = Progress(3, 0, 0, 0, 9, 3, 1.0, hypervolume=1.0027, best=quantity("mass").text(0.08799))
+    assert "best 0.08799 kg" in describe(state) and "hypervolume" not in describe(state)
+    assert "hypervolume 1.0027" in describe(replace(state, best=None))

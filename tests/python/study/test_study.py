@@ -76,7 +76,7 @@ def test_paper_grid():
         ('trajectory = "climb_and_turn"', 'trajectory = "loop"', "flight.trajectory: no trajectory 'loop'"),
         ("to_s = 6", "to_s = 2", "trajectories.climb_and_turn.windows: to_s = 2 is not after 3"),
         ("reach = 200", "reach = 205", "baseline: reach = 205 mm: off the grid"),
-        ("duration_s = 20.0", 'duration_s = "20"', "flight.duration_s: '20': expected `float`, got `str`"),
+        ("duration_s = 20.0", 'duration_s = "20"', "flight.duration_s: '20' is a text; write the number without"),
         ("[robot]", "[robot", "not valid TOML"),
         ("velocity_weight = 1.0", "velocity_weight = 1.0\nrange_scale = nan", "range_scale: nan is not a finite"),
         ("max_thrust_n = 250.0", "max_thrust_n = inf", "flight.jets.max_thrust_n: inf is not a finite"),
