@@ -9,7 +9,9 @@ from codesign.study.conversion import type_problems
 RAW = {
     "name": "arm",
     "variables": {"wall": {"min": "4", "max": 9, "step": 1, "unit": "mm"}},
-    "parts": [{"name": "arm", "shape": "arm:Arm", "supports": ["base"], "material": "7075-t6"}],
+    "parts": [
+        {"name": "arm", "shape": "arm:Arm", "supports": ["base"], "parameters": {"wall": "wall"}, "material": "7075-t6"}
+    ],
     "objectives": {"minimize": ["mass"]},
 }
 
