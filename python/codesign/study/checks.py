@@ -9,7 +9,7 @@ import difflib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
-from codesign.names import nearest
+from codesign.names import closest, nearest
 from codesign.parts.materials import material_names
 from codesign.parts.part import Part, parameter_units
 from codesign.problem.quantities import OF_A_PART, QUANTITIES, REDUCTIONS
@@ -224,7 +224,9 @@ def _nearest_numbers(config: StudyConfig, name: str) -> str:
         return -like.ratio(), known
 
     ranked = sorted(own | flown | of_parts, key=likeness)
-    return f"nearest of those that this study has: {', '.join(ranked[:MOST_NUMBERS])}"
+    found = closest(name, ranked)
+    meant = f"did you mean {found!r}? " if found else ""
+    return f"{meant}nearest of those that this study has: {', '.join(ranked[:MOST_NUMBERS])}"
 
 
 def _clearance_problems(config: StudyConfig) -> Iterator[Problem]:

@@ -6,6 +6,7 @@ import pytest
 import codesign
 from codesign import dynamics
 from codesign.chain import chain as pipeline
+from codesign.chain.clearances import clearances
 from codesign.chain.documents import flight_document, objective_families
 from codesign.chain.flight import flight_settings, joint_names
 from codesign.chain.judge import judge
@@ -20,14 +21,12 @@ def flown():
     robot = pipeline.build_robot(study, design)
     model = dynamics.load_urdf(robot.to_text(), joints=joint_names(config.flight))
     log = dynamics.simulate_flight(model, flight_settings(config.flight, config.trajectories["envelope"]))
-    return config, log, pipeline._clearances(config, pipeline.build_parts(study, design, config), robot, [log])
+    return config, log, clearances(config, pipeline.build_parts(study, design, config), robot, [log])
 
 
-def judged(config, log, clearances):
+def judged(config, log, found):
     """The verdict on a flight without parts."""
-    flight = flight_document("envelope", [log], config.flight, 0.0) | (
-        {"interference": clearances} if clearances else {}
-    )
+    flight = flight_document("envelope", [log], config.flight, 0.0) | ({"interference": found} if found else {})
     return judge(config, {"parts": {}, "flight": flight, "objective_families": objective_families([log])}, {})
 
 
@@ -63,5 +62,5 @@ def test_a_clearance_below_the_studys_limit_is_a_violation_with_a_reason(flown):
 def test_a_study_without_the_section_measures_nothing(flown):
     config, log, _ = flown
     silent = msgspec.structs.replace(config, interference=None)
-    assert pipeline._clearances(silent, {}, None, [log]) == {}
+    assert clearances(silent, {}, None, [log]) == {}
     assert "body_clearance" not in judged(silent, log, {}).constraints
