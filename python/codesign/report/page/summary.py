@@ -61,8 +61,8 @@ def _trust(run: ReportData, validation: Validation | None) -> str:
     """What the changes are of, and how to learn whether they last."""
     if run.baseline_vector is None or validated(run, validation):
         return run.flight_words
-    name = run.directory.name
-    return f"{run.flight_words} Whether these changes last on other flights is not known: codesign validate {name}."
+    command = f"codesign validate {run.directory}"
+    return f"{run.flight_words} Whether these changes last on other flights is not known: {command}."
 
 
 def _build(run: ReportData) -> str:
