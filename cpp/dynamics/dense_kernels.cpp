@@ -19,7 +19,9 @@ constexpr int kRows = 4;
 // first.
 constexpr int kChunk = 48;
 
-__attribute__((always_inline)) inline void load(const double* from, Four& rows) {
+// Rows of a column: four of them, or one as a plain double.
+template <class Rows>
+__attribute__((always_inline)) inline void load(const double* from, Rows& rows) {
   std::memcpy(&rows, from, sizeof(rows));
 }
 
@@ -27,31 +29,30 @@ __attribute__((always_inline)) inline void store(const Four& rows, double* to) {
   std::memcpy(to, &rows, sizeof(rows));
 }
 
-// Two neighboring columns of C at rows starting where `a` does: + Σ_k f_k a_k.
+// Rows of a column of C, those where `a` starts: + Σ_k f_k a_k.
+template <class Rows>
 __attribute__((always_inline)) inline void add_columns(const double* a, int m, int a_stride,
-                                                       const double* f0, const double* f1,
-                                                       Four& sum0, Four& sum1) {
-  Four x, y, z;
+                                                       const double* f, Rows& sum) {
+  Rows x, y, z;
   int k = 0;
   for (; k + 3 <= m; k += 3) {
     load(a + k * a_stride, x);
     load(a + (k + 1) * a_stride, y);
     load(a + (k + 2) * a_stride, z);
-    sum0 += f0[k] * x + f0[k + 1] * y + f0[k + 2] * z;
-    sum1 += f1[k] * x + f1[k + 1] * y + f1[k + 2] * z;
+    sum += f[k] * x + f[k + 1] * y + f[k + 2] * z;
   }
   for (; k < m; ++k) {
     load(a + k * a_stride, x);
-    sum0 += f0[k] * x;
-    sum1 += f1[k] * x;
+    sum += f[k] * x;
   }
 }
 
 // Rows of column j of a matrix whose first j columns are factored: − Σ_k l_k a_k, k < j; `row` is
 // where those of column 0 start.
+template <class Rows>
 __attribute__((always_inline)) inline void take_columns(const double* a, int row, int j, int stride,
-                                                        Four& sum) {
-  Four w, x, y, z;
+                                                        Rows& sum) {
+  Rows w, x, y, z;
   int k = 0;
   for (; k + 4 <= j; k += 4) {
     const double* c0 = a + k * stride;
@@ -80,52 +81,31 @@ inline double inverse_root(double pivot) {
 
 }  // namespace
 
-// Pairs of columns, four rows at a time from the last row up. The top four rows of a pair may
+// Column by column, four rows at a time from the last row up. The top four rows of a column may
 // overlap the four below: they are summed first and stored last, so that both start from the same
-// C. The last columns, shorter than four rows, go one by one.
+// C. The last columns, shorter than four rows, go row by row.
 CODESIGN_BOTH_WIDTHS
 void add_outer_product(double* c, int n, int c_stride, const double* a, int m, int a_stride,
                        double factor) {
-  double f[2][kChunk];
+  double f[kChunk];
   for (int start = 0; start < m; start += kChunk, a += kChunk * a_stride) {
     const int chunk = std::min(kChunk, m - start);
-    int j = 0;
-    for (; j + kRows <= n; j += 2) {
-      for (int k = 0; k < chunk; ++k) {
-        f[0][k] = factor * a[k * a_stride + j];
-        f[1][k] = factor * a[k * a_stride + j + 1];
+    for (int j = 0; j < n; ++j) {
+      for (int k = 0; k < chunk; ++k) f[k] = factor * a[k * a_stride + j];
+      double* column = c + j * c_stride;
+      if (j + kRows > n) {
+        for (int i = j; i < n; ++i) add_columns(a + i, chunk, a_stride, f, column[i]);
+        continue;
       }
-      double* c0 = c + j * c_stride;
-      double* c1 = c0 + c_stride;
-      Four top0, top1, sum0, sum1;
-      load(c0 + j, top0);
-      load(c1 + j, top1);
-      const double above = c1[j];  // of the diagonal: stays
-      add_columns(a + j, chunk, a_stride, f[0], f[1], top0, top1);
-      top1[0] = above;
+      Four top, sum;
+      load(column + j, top);
+      add_columns(a + j, chunk, a_stride, f, top);
       for (int i = n - kRows; i > j; i -= kRows) {
-        load(c0 + i, sum0);
-        load(c1 + i, sum1);
-        add_columns(a + i, chunk, a_stride, f[0], f[1], sum0, sum1);
-        store(sum0, c0 + i);
-        store(sum1, c1 + i);
+        load(column + i, sum);
+        add_columns(a + i, chunk, a_stride, f, sum);
+        store(sum, column + i);
       }
-      store(top0, c0 + j);
-      store(top1, c1 + j);
-    }
-    for (; j < n; ++j) {
-      for (int i = j; i < n; ++i) {
-        double sum = c[j * c_stride + i];
-        int k = 0;
-        for (; k + 3 <= chunk; k += 3) {
-          const double* x = a + k * a_stride;
-          const double* y = x + a_stride;
-          const double* z = y + a_stride;
-          sum += factor * x[j] * x[i] + factor * y[j] * y[i] + factor * z[j] * z[i];
-        }
-        for (; k < chunk; ++k) sum += factor * a[k * a_stride + j] * a[k * a_stride + i];
-        c[j * c_stride + i] = sum;
-      }
+      store(top, column + j);
     }
   }
 }
@@ -152,19 +132,7 @@ bool cholesky_in_place(double* a, int m, int stride) {
   }
   for (; j < m; ++j) {
     double* column = a + j * stride;
-    for (int i = j; i < m; ++i) {
-      double sum = column[i];
-      int k = 0;
-      for (; k + 4 <= j; k += 4) {
-        const double* c0 = a + k * stride;
-        const double* c1 = c0 + stride;
-        const double* c2 = c1 + stride;
-        const double* c3 = c2 + stride;
-        sum -= (c0[j] * c0[i] + c1[j] * c1[i]) + (c2[j] * c2[i] + c3[j] * c3[i]);
-      }
-      for (; k < j; ++k) sum -= a[k * stride + j] * a[k * stride + i];
-      column[i] = sum;
-    }
+    for (int i = j; i < m; ++i) take_columns(a, i, j, stride, column[i]);
     const double inverse = inverse_root(column[j]);
     if (inverse == 0.0) return false;
     for (int i = j + 1; i < m; ++i) column[i] *= inverse;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "fem/surface/distance.hpp"
 
@@ -45,10 +46,13 @@ void SurfaceDistance::add_edge(const TetMesh& mesh, int triangle, int k, double 
   add(middle, b, b, reach);
 }
 
-int SurfaceDistance::cell(const Eigen::Vector3d& point, Eigen::Index axis) const {
-  const double place = std::floor((point[axis] - centers_.min()[axis]) / edge_);
-  const int last = cells_[static_cast<std::size_t>(axis)] - 1;
-  return static_cast<int>(std::clamp(place, 0.0, static_cast<double>(last)));
+Eigen::Array3i SurfaceDistance::cell(const Eigen::Vector3d& point) const {
+  const Eigen::Array3d place = ((point - centers_.min()).array() / edge_).floor();
+  return place.max(0.0).min((cells_ - 1).cast<double>()).cast<int>();
+}
+
+std::size_t SurfaceDistance::number(const Eigen::Array3i& cell) const {
+  return static_cast<std::size_t>((cell[2] * cells_[1] + cell[1]) * cells_[0] + cell[0]);
 }
 
 void SurfaceDistance::sort_pieces() {
@@ -56,18 +60,16 @@ void SurfaceDistance::sort_pieces() {
   if (balls_.empty()) return;
   edge_ = std::max(max_extent_, centers_.sizes().maxCoeff() / kMostAlong);
   if (!(edge_ > 0)) edge_ = 1.0;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    cells_[static_cast<std::size_t>(axis)] = static_cast<int>(centers_.sizes()[axis] / edge_) + 1;
-  }
-  const auto place = [this](const Ball& ball) {
-    return (cell(ball.center, 2) * cells_[1] + cell(ball.center, 1)) * cells_[0] +
-           cell(ball.center, 0);
-  };
-  std::sort(balls_.begin(), balls_.end(),
-            [&](const Ball& p, const Ball& q) { return place(p) < place(q); });
-  first_.assign(static_cast<std::size_t>(cells_[0] * cells_[1] * cells_[2]) + 1, 0);
-  for (const Ball& ball : balls_) ++first_[static_cast<std::size_t>(place(ball)) + 1];
+  cells_ = (centers_.sizes().array() / edge_).cast<int>() + 1;
+  first_.assign(static_cast<std::size_t>(cells_.prod()) + 1, 0);
+  for (const Ball& ball : balls_) ++first_[number(cell(ball.center)) + 1];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::vector<int> next = first_;
+  std::vector<Ball> sorted(balls_.size());
+  for (const Ball& ball : balls_) {
+    sorted[static_cast<std::size_t>(next[number(cell(ball.center))]++)] = ball;
+  }
+  balls_ = std::move(sorted);
 }
 
 SurfaceDistance::SurfaceDistance(const TetMesh& mesh, const std::vector<int>& triangles,
@@ -81,13 +83,12 @@ bool SurfaceDistance::within(const Eigen::Vector3d& point, double more) const {
   if (balls_.empty() || span < 0 || centers_.squaredExteriorDistance(point) > span * span) {
     return false;
   }
-  const Eigen::Vector3d low = point.array() - span, high = point.array() + span;
-  for (int z = cell(low, 2); z <= cell(high, 2); ++z) {
-    for (int y = cell(low, 1); y <= cell(high, 1); ++y) {
-      const int row = (z * cells_[1] + y) * cells_[0];
-      const int first = first_[static_cast<std::size_t>(row + cell(low, 0))];
-      const int end = first_[static_cast<std::size_t>(row + cell(high, 0)) + 1];
-      for (int i = first; i < end; ++i) {
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(span);
+  const Eigen::Array3i low = cell(point - reach), high = cell(point + reach);
+  for (int z = low[2]; z <= high[2]; ++z) {
+    for (int y = low[1]; y <= high[1]; ++y) {
+      const int end = first_[number({high[0], y, z}) + 1];
+      for (int i = first_[number({low[0], y, z})]; i < end; ++i) {
         if (reaches(balls_[static_cast<std::size_t>(i)], point, more)) return true;
       }
     }

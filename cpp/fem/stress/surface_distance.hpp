@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "fem/mesh/tet_mesh.hpp"
@@ -49,14 +49,15 @@ class SurfaceDistance {
            double reach);
 
   bool reaches(const Ball& ball, const Eigen::Vector3d& point, double more) const;
-  int cell(const Eigen::Vector3d& point, Eigen::Index axis) const;
+  Eigen::Array3i cell(const Eigen::Vector3d& point) const;  // the nearest of the grid
+  std::size_t number(const Eigen::Array3i& cell) const;
 
   std::vector<Piece> pieces_;
   std::vector<Ball> balls_;      // by cell of a grid over their centers, those along x in a row
   std::vector<int> first_;       // (cells + 1) of balls_
   Eigen::AlignedBox3d centers_;  // box around them
   double edge_ = 1.0;            // of a cell [m]
-  std::array<int, 3> cells_{1, 1, 1};
+  Eigen::Array3i cells_ = Eigen::Array3i::Ones();
   double max_extent_ = 0.0;  // of radius + reach
 };
 

@@ -82,20 +82,19 @@ def _flown_only(
     if not result.flights:
         return None, Flown(made, result, time.perf_counter() - start)
     masses = {name: {MASSES: float(mass.mass)} for name, mass in made.masses.items()}
-    clearances = flight_numbers(config, made.parts, made.robot, result) if _measures_early(config) else None
-    flown = clearances or flown_document(config, result.flights, result.seconds["flight"])
-    document = {"parts": masses, **flown}
+    numbers = flight_numbers(config, made.parts, made.robot, result) if _measures_early(config) else None
+    document = {"parts": masses, **(numbers or flown_document(config, result.flights, result.seconds["flight"]))}
     chosen = [
         limit for limit in limits(config) if _early(limit.quantity, config) or limit.quantity.key == FLIGHT_MISSED
     ]
     verdict = judge(config, {"design": design.to_dict(), **document}, study.functions, chosen)
     rival = None if verdict.status == "infeasible" else rival_of(rivals, verdict.objectives.values())
     if verdict.status != "infeasible" and rival is None:
-        return None, Flown(made, result, time.perf_counter() - start, clearances)
+        return None, Flown(made, result, time.perf_counter() - start, numbers)
     seconds = {"geometry": made.seconds, **result.seconds, "total": time.perf_counter() - start}
     missing = STRENGTH_NOT_COMPUTED if _measures_early(config) else NOT_COMPUTED
     stopped = _stopped(study, design, verdict, rival, document | {"parts": {}}, seconds, missing)
-    return stopped, Flown(made, result, seconds["total"], clearances)
+    return stopped, Flown(made, result, seconds["total"], numbers)
 
 
 def _stopped(

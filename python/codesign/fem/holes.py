@@ -28,7 +28,9 @@ class Cylinder:
 def holes(surface: SurfaceMesh) -> dict[int, Cylinder]:
     """Faces (indices into `surface.face_names`) that are walls of round holes, or together with others such a wall."""
     hollow = hollows(surface)
-    return {index: hollow[index] for index in hollow if _opening(surface, hollow, index) < OPEN}
+    face = np.asarray(surface.face)
+    points = {index: surface.points[np.unique(surface.triangles[face == index])] for index in hollow}
+    return {index: wall for index, wall in hollow.items() if _opening(wall, hollow, points) < OPEN}
 
 
 def hollows(surface: SurfaceMesh) -> dict[int, Cylinder]:
@@ -38,16 +40,12 @@ def hollows(surface: SurfaceMesh) -> dict[int, Cylinder]:
     return {index: cylinder for index, cylinder in found.items() if cylinder is not None and cylinder.hollow}
 
 
-def _opening(surface: SurfaceMesh, hollow: dict[int, Cylinder], index: int) -> float:
+def _opening(wall: Cylinder, hollow: dict[int, Cylinder], points: dict[int, NDArray[np.float64]]) -> float:
     """Largest angle [rad] around the axis of a face without a corner of it or of those that go around with it.
 
-    Those: the same circle, and a stretch of the axis in common.
+    Those: the same circle, and a stretch of the axis in common. points: (k, 3) corners of each face [m].
     """
-    wall = hollow[index]
-    face = np.asarray(surface.face)
-    points = {i: surface.points[np.unique(surface.triangles[face == i])] for i in hollow}
-    along = {i: (points[i] - wall.center) @ wall.axis for i in hollow}
-    low, high = along[index].min(), along[index].max()
+    own = next((points[i] - wall.center) @ wall.axis for i, other in hollow.items() if other is wall)
     around = []
     for i, other in hollow.items():
         away = other.center - wall.center
@@ -55,9 +53,10 @@ def _opening(surface: SurfaceMesh, hollow: dict[int, Cylinder], index: int) -> f
         tilted = float(np.linalg.norm(np.cross(wall.axis, other.axis)))
         if max(tilted, shifted / wall.radius, abs(other.radius / wall.radius - 1.0)) > SAME_CIRCLE:
             continue
-        common = min(high, along[i].max()) - max(low, along[i].min())
-        if common > SAME_CIRCLE * wall.radius:
-            around.append(points[i] - wall.center)
+        arms = points[i] - wall.center
+        along = arms @ wall.axis
+        if min(own.max(), along.max()) - max(own.min(), along.min()) > SAME_CIRCLE * wall.radius:
+            around.append(arms)
     arms = np.concatenate(around)
     first = np.cross(wall.axis, np.eye(3)[np.argmin(np.abs(wall.axis))])
     angles = np.sort(np.arctan2(arms @ np.cross(wall.axis, first), arms @ first))

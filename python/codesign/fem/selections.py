@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ from codesign import fem
 from codesign._core import fem as _core
 from codesign.errors import MeshError, ModelError
 from codesign.fem.cut import cut_by_box
-from codesign.fem.holes import holes, hollows
+from codesign.fem.holes import Cylinder, holes, hollows
 from codesign.fem.model import MAX_BEND_DEG
 from codesign.names import nearest
 from codesign.units import MILLIMETER
@@ -90,11 +90,12 @@ class NamedFace:
         names = list(surface.face_names)
         if self.name not in names:
             known = [name for name in names if name]
-            hint = (
-                nearest(self.name, known) if known else "the file names none: choose by near:, box:, normal: or hole:"
-            )
-            if self.name.removeprefix("face ").isdecimal() and known:
+            if not known:
+                hint = "the file names none: choose by near:, box:, normal: or hole:"
+            elif self.name.removeprefix("face ").isdecimal():
                 hint = f"there are {', '.join(known[:MOST_FACES])}{' …' if len(known) > MOST_FACES else ''}"
+            else:
+                hint = nearest(self.name, known)
             raise ModelError(f"no face {self.name!r}; {hint}; `codesign faces FILE` lists those of a STEP file")
         chosen: Triangles = np.asarray(surface.face) == names.index(self.name)
         return chosen
@@ -113,17 +114,18 @@ class Holes:
     def triangles(self, surface: fem.SurfaceMesh) -> Triangles:
         """Those of the surface. Raises: ModelError: there is no such hole."""
         found = holes(surface)
-        chosen = [i for i, hole in found.items() if abs(hole.radius - self.radius) <= SAME_RADIUS * self.radius]
+        chosen = self._of_radius(found)
         if not chosen:
             radii = sorted({f"{hole.radius / MILLIMETER:.4g}" for hole in found.values()})
             known = f"the holes have radii of {', '.join(radii)} mm" if radii else "there is no round hole"
-            if any(
-                abs(round_.radius - self.radius) <= SAME_RADIUS * self.radius for round_ in hollows(surface).values()
-            ):
+            if self._of_radius(hollows(surface)):
                 known += "; a round face of this radius does not close (a fillet, a slot): choose it by near: or face:"
             raise ModelError(f"no hole of radius {self.radius / MILLIMETER:g} mm; {known}")
         facets: Triangles = np.isin(np.asarray(surface.face), chosen)
         return facets
+
+    def _of_radius(self, round_faces: Mapping[int, Cylinder]) -> list[int]:
+        return [i for i, wall in round_faces.items() if abs(wall.radius - self.radius) <= SAME_RADIUS * self.radius]
 
     def on_mesh(self) -> fem.Selection:
         """Sides of elements whose middle lies on the walls: known only from the surface."""

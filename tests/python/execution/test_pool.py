@@ -49,9 +49,11 @@ def test_each_fault_is_one_failed_result_with_its_reason() -> None:
     assert [outcome.evaluation.status for outcome in outcomes[len(FAULTS) :]] == ["feasible"] * 4
 
 
-@pytest.mark.slow
 def test_workers_keep_the_memory_that_evaluations_free() -> None:
-    """With their settings, filling 64 MB for the second to tenth time faults no page in."""
+    """With their settings, filling 64 MB for the second to tenth time faults no page in.
+
+    Dask leaves a MALLOC_TRIM_THRESHOLD_ of its own in the environment of a process that had a cluster.
+    """
     code = (
         "import resource\n"
         "def faults():\n"
