@@ -1,14 +1,17 @@
-"""Writes docs/study.md from the configuration's classes; `--check`: fails where the page is not current."""
+"""Writes docs/study.md and docs/numbers.md from the code; `--check`: fails where a page is not current."""
 
 import sys
 from pathlib import Path
 
+from codesign.study.number_page import numbers_page
 from codesign.study.reference import reference_page
 
-PAGE = Path(__file__).parents[1] / "docs" / "study.md"
+DOCS = Path(__file__).parents[1] / "docs"
+PAGES = {DOCS / "study.md": reference_page, DOCS / "numbers.md": numbers_page}
 
 if __name__ == "__main__":
-    if "--check" in sys.argv:
-        current = PAGE.read_text(encoding="utf-8") == reference_page()
-        sys.exit(0 if current else f"{PAGE} is not current: python scripts/study_reference.py")
-    PAGE.write_text(reference_page(), encoding="utf-8")
+    for page, text in PAGES.items():
+        if "--check" not in sys.argv:
+            page.write_text(text(), encoding="utf-8")
+        elif not page.is_file() or page.read_text(encoding="utf-8") != text():
+            sys.exit(f"{page} is not current: python scripts/study_reference.py")

@@ -17,6 +17,12 @@ from codesign.study.config import StudyConfig
 from codesign.units import MILLIMETER
 
 CLEARANCE_SCALE = 0.01  # m: a clearance this much too small counts as much as a safety factor of zero
+LIMITS = "constraints.limits"
+MINIMA_KEYS = {
+    "safety_factor": "safety_factor_min",
+    "first_frequency": "first_frequency_min_hz",
+    "buckling_factor": "buckling_factor_min",
+}
 FLIGHT_MISSED = "flight_missed_share"  # of two lost designs the one that flew longer violates less
 
 Functions = Mapping[str, Callable[[Mapping[str, Any]], float]]
@@ -25,12 +31,16 @@ Document = Mapping[str, Any]  # design, parts, flight, objective_families: as in
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A bound [SI] on a number of the evaluation. scale: a miss by this much is a violation of 1."""
+    """A bound [SI] on a number of the evaluation.
+
+    scale: a miss by this much is a violation of 1. origin: the key of the study that asks for it.
+    """
 
     quantity: Quantity
     least: float | None = None
     most: float | None = None
     scale: float = 1.0
+    origin: str = ""
 
     def margin(self, value: float | None) -> float:
         """By how much of the scale the bound is kept; below 0: missed. None: a number without bound (no buckling)."""
@@ -114,24 +124,26 @@ def limits(config: StudyConfig) -> Iterator[Limit]:
     """Everything that a study demands: a completed flight if it has one, and what its [constraints] say."""
     asked = config.constraints
     if config.flight is not None:
-        yield Limit(quantity(FLIGHT_MISSED), most=0.0)
+        yield Limit(quantity(FLIGHT_MISSED), most=0.0, origin="flight")
     for key, least in asked.part_minima.items():
+        origin = f"constraints.{MINIMA_KEYS[key]}"
         if key == "safety_factor" and any(case.safety_factor_min for part in config.parts for case in part.load_cases):
             yield from case_limits(config, least)
         else:
-            yield Limit(quantity(key), least=least, scale=least)
+            yield Limit(quantity(key), least=least, scale=least, origin=origin)
     if config.interference is not None:
         for key, gap_mm in (
             ("body_clearance", asked.body_clearance_min_mm),
             ("plume_clearance", asked.plume_clearance_min_mm),
         ):
             if gap_mm is not None:
-                yield Limit(quantity(key), least=gap_mm * MILLIMETER, scale=CLEARANCE_SCALE)
+                least, origin = gap_mm * MILLIMETER, f"constraints.{key}_min_mm"
+                yield Limit(quantity(key), least=least, scale=CLEARANCE_SCALE, origin=origin)
     for key, bound in asked.limits.items():
         if bound.minimum is not None:
-            yield Limit(quantity(key), least=bound.minimum, scale=abs(bound.minimum) or 1.0)
+            yield Limit(quantity(key), least=bound.minimum, scale=abs(bound.minimum) or 1.0, origin=LIMITS)
         if bound.maximum is not None:
-            yield Limit(quantity(key), most=bound.maximum, scale=abs(bound.maximum) or 1.0)
+            yield Limit(quantity(key), most=bound.maximum, scale=abs(bound.maximum) or 1.0, origin=LIMITS)
 
 
 def case_limits(config: StudyConfig, otherwise: float) -> Iterator[Limit]:
@@ -141,7 +153,9 @@ def case_limits(config: StudyConfig, otherwise: float) -> Iterator[Limit]:
             least = case.safety_factor_min or otherwise
             path = f"parts.{part.name}.cases.{case.name}.safety_factor"
             label = f"{part.name}, load case {case.name}: safety factor"
-            yield Limit(Quantity(path, label, path=path), least=least, scale=least)
+            own = f"parts.{part.name}.cases[{case.name}].safety_factor_min"
+            origin = own if case.safety_factor_min else f"constraints.{MINIMA_KEYS['safety_factor']}"
+            yield Limit(Quantity(path, label, path=path), least=least, scale=least, origin=origin)
 
 
 def value_of(document: Document, wanted: Quantity, functions: Functions) -> float | None:

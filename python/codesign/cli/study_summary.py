@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from codesign.chain.judge import limits
+from codesign.chain.judge import FLIGHT_MISSED, LIMITS, Limit, limits
 from codesign.cli.console import out, shown
+from codesign.problem.numbers import known_number
+from codesign.study.checking.numbers import constant_numbers
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
@@ -28,15 +31,28 @@ def study_summary(study: Study) -> dict[str, Any]:
         "designs": math.prod(study.space.levels),
         "objectives": list(study.objectives),
         "limits": [
-            {"key": limit.quantity.key, "label": limit.quantity.label, "unit": limit.quantity.unit,
-             "factor": limit.quantity.factor, "min": limit.least, "max": limit.most}
+            {"key": limit.quantity.key, "label": limit.quantity.label, "unit": _unit(limit),
+             "factor": limit.quantity.factor, "min": limit.least, "max": limit.most, "origin": limit.origin,
+             "default": _by_default(study, limit.origin)}
             for limit in limits(study.config)
         ],
         "population": study.optimizer.population,
         "generations": study.optimizer.generations,
         "workers": study.execution.workers,
         "control": control(study),
+        "notes": [f"{key}: {reason}" for key, reason in constant_numbers(study.config)],
     }  # fmt: skip
+
+
+def _unit(limit: Limit) -> str:
+    known = known_number(limit.quantity.key)
+    return limit.quantity.unit or (known.unit if known else "")
+
+
+def _by_default(study: Study, origin: str) -> bool:
+    """Whether a limit is there although the study file does not say so."""
+    section, _, key = origin.partition(".")
+    return section == "constraints" and "." not in key and origin != LIMITS and key not in study.raw.get(section, {})
 
 
 def typical(study: Study) -> Design:
@@ -50,16 +66,36 @@ def control(study: Study) -> dict[str, Any]:
 
 
 def measured(study: Study) -> dict[str, Any]:
-    """One evaluation of a typical design: its status, reason, wall and own times [s]."""
-    start = time.perf_counter()
-    evaluation = study.evaluate(typical(study))
-    wall = time.perf_counter() - start
+    """Evaluations of a typical design and of both ends of the grid: status, reason, processor times [s].
+
+    constant: objectives and limits that had the same value in all of them.
+    """
+    levels = study.space.levels
+    ends = (study.space.from_indices([0] * len(levels)), study.space.from_indices([n - 1 for n in levels]))
+    designs = []
+    for design in dict.fromkeys((typical(study), *ends)):
+        start = time.process_time()
+        evaluation = study.evaluate(design)
+        designs.append(
+            {
+                "design": evaluation.design,
+                "status": evaluation.status,
+                "reason": evaluation.reason,
+                "cpu_seconds": time.process_time() - start,
+                "seconds": evaluation.seconds,
+                "numbers": evaluation.constraints | evaluation.objectives,
+            }
+        )
+    return {"designs": designs, "constant": _same_in_all(designs)}
+
+
+def _same_in_all(designs: Sequence[dict[str, Any]]) -> dict[str, float]:
+    """Numbers with one value in several designs, but for that of a completed flight."""
+    first, *others = [design["numbers"] for design in designs if design["status"] != "failed"] or [{}]
     return {
-        "design": evaluation.design,
-        "status": evaluation.status,
-        "reason": evaluation.reason,
-        "wall_seconds": wall,
-        "seconds": evaluation.seconds,
+        key: value
+        for key, value in first.items()
+        if others and key != FLIGHT_MISSED and all(other.get(key) == value for other in others)
     }
 
 
@@ -71,17 +107,31 @@ def print_study(summary: dict[str, Any]) -> None:
     out.print(table)
     out.print(f"{summary['designs']:,} designs", highlight=False)
     out.print(f"minimized: {', '.join(summary['objectives'])}")
-    out.print(f"limited: {', '.join(map(_limit, summary['limits']))}")
+    out.print("limited:")
+    for limit in summary["limits"]:
+        out.print(f"  {_limit(limit)}", highlight=False, markup=False)
     print_control(summary["control"])
-    if "evaluation" not in summary:
-        return
-    one = summary["evaluation"]
-    told = f"one evaluation ({one['status']}): {one['wall_seconds']:.2f} s"
-    out.print(told + (f"; {one['reason']}" if one["reason"] else ""), highlight=False)
+    for note in summary["notes"]:
+        out.print(f"note: {note}", highlight=False, markup=False, soft_wrap=True)
+    if "evaluation" in summary:
+        _print_costs(summary)
+
+
+def _print_costs(summary: dict[str, Any]) -> None:
+    """What the measured designs cost, what the search would, and which numbers were the same in all of them."""
+    found = summary["evaluation"]
+    for one in found["designs"]:
+        values = ", ".join(f"{name} = {shown(value)}" for name, value in one["design"].items())
+        told = f"{one['cpu_seconds']:.2f} s of processor time: {values} ({one['status']})"
+        out.print(told + (f"; {one['reason']}" if one["reason"] else ""), highlight=False, markup=False)
+    times = sorted(one["cpu_seconds"] for one in found["designs"])
     count = summary["population"] * summary["generations"]
-    hours = count * one["wall_seconds"] / summary["workers"] / 3600.0
-    searched = f"{count:,} evaluations of the search on {summary['workers']} workers: about {hours:.2g} h"
+    each = count / summary["workers"] / 3600.0
+    hours = f"{each * times[0]:.2g} to {each * times[-1]:.2g} h"
+    searched = f"{count:,} evaluations of the search on {summary['workers']} workers, a core each: {hours}"
     out.print(searched, highlight=False)
+    for key, value in found["constant"].items():
+        out.print(f"note: {key} was {shown(value)} in all of them: does it decide anything?", highlight=False)
 
 
 def print_control(control: dict[str, Any]) -> None:
@@ -103,4 +153,5 @@ def _limit(limit: dict[str, Any]) -> str:
         for sign, key in (("≥", "min"), ("≤", "max"))
         if limit[key] is not None
     ]
-    return f"{limit['label']} {' '.join(bounds)}"
+    origin = f"{limit['origin']}, its default" if limit["default"] else limit["origin"]
+    return f"{limit['label']} {' '.join(bounds)} ({origin})"

@@ -26,6 +26,7 @@ Vector = NDArray[np.float64]
 EDGE_SHARE, FINE_EDGE_SHARE = 0.35, 0.2  # of the mean wall thickness
 MOST_ELEMENTS = 60_000  # about, that the mean wall thickness alone may ask for
 MAX_REFINEMENTS = 3  # halvings of the edge length around the peak
+FLAT, ALONG_AXIS = 1e-3, 1e-3  # of the normals' second moments, of a force: what counts as none, as in cpp/fem/boundary
 LEAST_MEAN_NORMAL = 0.1  # length of a face's mean unit normal: 1 for a plane, 0.64 for a half bore, 0 for a whole one
 
 
@@ -189,6 +190,13 @@ def default_case(part: Part, settings: StressSettings) -> _core.PartCase:
     """Clamped and pressed faces by name; edge length as asked for, else from the mean wall thickness."""
     surface = part.fem_surface(settings.geometry, settings.segments)
     edge_length = _edge_length(part, surface, settings)
+    for case in settings.cases:
+        for load in case.loads:
+            if isinstance(load, fem.BearingLoad) and isinstance(load.where, str) and load.where in surface.face_names:
+                try:
+                    require_bearing(surface, load.where, load.force)
+                except ModelError as error:
+                    raise ModelError(f"{part.name}, load case {case.name}: bearing_n on {error}") from None
     cases = load_cases(settings, lambda load: face_force(surface, load, part.name))
     return native_case(settings, surface, fem.default_size(surface, edge_length), held_faces(settings.supports), cases)
 
@@ -289,6 +297,26 @@ def pressing_direction(surface: fem.SurfaceMesh, face: str) -> Vector:
             "press in; give the force as a vector, force_n = [x, y, z]"
         )
     return np.asarray(direction / length)
+
+
+def require_bearing(surface: fem.SurfaceMesh, face: str, force: ArrayLike) -> None:
+    """A pin can press on a named face with a total force (3,) [N].
+
+    Raises: ModelError: the force has a part along the axis of the bore, or points away from the whole face.
+    """
+    corners = surface.points[surface.triangles[np.asarray(surface.face) == surface.face_names.index(face)]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    values, axes = np.linalg.eigh(np.einsum("ni,nj,n->ij", normals, normals, 1.0 / np.maximum(areas, 1e-300)))
+    wanted = np.asarray(force, dtype=float)
+    along = axes[:, values < FLAT * values[2]].T @ wanted  # directions that no normal has a part in
+    if np.linalg.norm(along) > ALONG_AXIS * np.linalg.norm(wanted):
+        raise ModelError(
+            f"face {face!r}: {np.linalg.norm(along):.4g} N of it are along the axis of the bore, where a pin slides; "
+            "give that part as a force of its own, force_n"
+        )
+    if not (normals @ wanted < 0.0).any():
+        raise ModelError(f"face {face!r}: the force points away from the face, which a pin only presses on")
 
 
 def held_face(text: str) -> tuple[str, str]:

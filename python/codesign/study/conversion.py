@@ -6,6 +6,7 @@ import copy
 import functools
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -49,9 +50,22 @@ def _with_known_materials(config: StudyConfig) -> StudyConfig:
     return msgspec.structs.replace(config, materials=config.materials | known) if known else config
 
 
-def type_problems(raw: RawStudy) -> list[str]:
-    """All keys that are unknown, missing or of a wrong type: what is refused is left out and the rest read again."""
-    raw, found, removed = copy.deepcopy(raw), list[str](), set[str]()
+@dataclass(frozen=True, slots=True)
+class Readable:
+    """What can be read of a study file. problems: keys that are unknown, missing or of a wrong type.
+
+    raw: the rest of the file, None if nothing can be made of it. lost: names of keys and entries that had to be left
+    out with what they held: what refers to them cannot be judged.
+    """
+
+    problems: list[str]
+    raw: RawStudy | None
+    lost: set[str]
+
+
+def readable(raw: RawStudy) -> Readable:
+    """All wrong keys: what is refused is left out, or a quoted number unquoted, and the rest read again."""
+    raw, found, removed, lost = copy.deepcopy(raw), list[str](), set[str](), set[str]()
     for _ in range(MOST_PROBLEMS):
         try:
             msgspec.convert(raw, StudyConfig)
@@ -64,13 +78,35 @@ def type_problems(raw: RawStudy) -> list[str]:
             if not follows and (missing is None or _written([*steps, missing[1]]) not in removed):
                 found.append(_explained(raw, error))
             if missing is not None and not steps:
-                break  # of the whole file, which is read last
+                return Readable(found, None, lost)  # of the whole file, which is read last
             *above, last = [*steps, unknown[1]] if unknown else steps
+            if not unknown and (number := _quoted_number(_at(raw, steps), reason)) is not None:
+                _at(raw, above)[last] = number
+                continue
             removed.add(_written([*above, last]))
+            if not unknown:
+                lost |= _names(last, _at(raw, steps))
             del _at(raw, above)[last]
         else:
-            break
-    return found
+            return Readable(found, raw, lost)
+    return Readable(found, None, lost)
+
+
+def _quoted_number(value: Any, reason: str) -> float | None:
+    """The number that a text in place of one says."""
+    wrong = WRONG_TYPE.fullmatch(reason)
+    if wrong is None or not {"int", "float"} & set(wrong[1].split(" | ")):
+        return None
+    try:
+        number = float(value)
+    except ValueError:
+        return None
+    return int(number) if number.is_integer() else number
+
+
+def _names(key: str | int, value: Any) -> set[str]:
+    """What others may call an entry by: its key or its name."""
+    return {str(name) for name in (key, value.get("name") if isinstance(value, dict) else None) if name}
 
 
 def numbers(node: Any) -> Iterator[tuple[str, float]]:

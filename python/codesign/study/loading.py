@@ -18,12 +18,13 @@ from codesign.names import nearest
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignSpace
 from codesign.robot.description import RobotDescription
-from codesign.study.checks import Problem, reference_problems
+from codesign.study.checking.flight import flight_problems, robot_problems
+from codesign.study.checking.problems import Problem
+from codesign.study.checking.references import reference_problems
 from codesign.study.choices import design_space
 from codesign.study.config import PartConfig, RawStudy, StudyConfig
-from codesign.study.conversion import convert, type_problems
+from codesign.study.conversion import convert
 from codesign.study.fingerprint import study_identity
-from codesign.study.flight_checks import flight_problems, robot_problems
 from codesign.study.imports import PACKAGE
 from codesign.study.parts import built_problems
 from codesign.study.study import StudyData
@@ -47,14 +48,14 @@ def load(source: str | Path, kind: type[AnyStudy]) -> AnyStudy:
         source: a shipped study's name, or the path of a study.toml or of its folder.
     Raises: StudyError with file, key, value and reason.
     """
-    path = _locate(source)
+    path = locate(source)
     make = cast("Callable[..., StudyData]", kind)
-    return cast("AnyStudy", _load(str(source), path, make, _content(path, _parse(path))))
+    return cast("AnyStudy", _load(str(source), path, make, _content(path, parse(path))))
 
 
 @functools.lru_cache(maxsize=8)
 def _load(source: str, path: Path, kind: Callable[..., StudyData], _content: str) -> StudyData:
-    return study_from(_parse(path), path, kind, source)
+    return study_from(parse(path), path, kind, source)
 
 
 def study_from(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source: str = "") -> StudyData:
@@ -66,17 +67,17 @@ def study_from(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
     Raises: StudyError with file, key, value and reason.
     """
     study = _unchecked(raw, path, kind, source)
-    _refuse(path, _design_problems(study))
+    _refuse(path, design_problems(study))
     return study
 
 
 def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source: str) -> StudyData:
     """A study whose file is right in itself."""
     config = convert(raw, path)
-    part_classes = {part.name: _part_class(part, path) for part in config.parts}
-    functions = {name: _function(name, path) for name in own_functions(config)}
+    part_classes = {part.name: part_class(part, path) for part in config.parts}
+    functions = {name: function_of(name, path) for name in own_functions(config)}
     _refuse(path, chain(reference_problems(config, part_classes), flight_problems(config)))
-    robot = _robot(config, path)
+    robot = robot_of(config, path)
     modules = {cls.__module__ for cls in part_classes.values()} | {f.__module__ for f in functions.values()}
     return kind(
         source=source if source in shipped_studies() else str(path),
@@ -91,7 +92,7 @@ def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
     )
 
 
-def _robot(config: StudyConfig, path: Path) -> RobotDescription:
+def robot_of(config: StudyConfig, path: Path) -> RobotDescription:
     """The robot of a study; one bare link where it has none."""
     if config.robot is None:
         return RobotDescription.from_text(BARE_ROBOT)
@@ -101,7 +102,7 @@ def _robot(config: StudyConfig, path: Path) -> RobotDescription:
         raise StudyError(f"{path}: robot.urdf: {error}") from error
 
 
-def _parse(path: Path) -> RawStudy:
+def parse(path: Path) -> RawStudy:
     """The document of a study, with what it takes over from the study it extends. Raises: StudyError."""
     return extended(_document(path), path, _extended_file, _document)
 
@@ -144,14 +145,10 @@ def _refuse(path: Path, problems: Iterable[Problem]) -> None:
         raise StudyError(f"{path}: {key}: {reason}")
 
 
-def _design_problems(study: StudyData) -> Iterator[Problem]:
+def design_problems(study: StudyData) -> Iterator[Problem]:
     """What designs of the grid show: values that variables set, the baseline, the parts' options, faces and places."""
     space = study.space
     last, middle = [n - 1 for n in space.levels], [n // 2 for n in space.levels]
-    second = [min(1, n) for n in last]
-    for corner in ([0] * len(space.levels), second, last, *_other_choices(study.space)):
-        configured = study.configured(space.from_indices(corner))
-        yield from chain(reference_problems(configured, study.part_classes), flight_problems(configured))
     designs = [space.from_indices(indices) for indices in (middle, [0] * len(middle), last)]
     try:
         designs = designs if study.baseline is None else [study.baseline, *designs]
@@ -159,6 +156,10 @@ def _design_problems(study: StudyData) -> Iterator[Problem]:
         yield "baseline", str(error)
     yield from robot_problems(study.config, study.base_robot)
     yield from built_problems(study.config, study.part_classes, study.base_robot, designs)
+    second = [min(1, n) for n in last]
+    for corner in ([0] * len(space.levels), second, last, *_other_choices(study.space)):
+        configured = study.configured(space.from_indices(corner))
+        yield from chain(reference_problems(configured, study.part_classes), flight_problems(configured))
 
 
 def _other_choices(space: DesignSpace) -> Iterator[list[int]]:
@@ -168,29 +169,8 @@ def _other_choices(space: DesignSpace) -> Iterator[list[int]]:
         yield [min(k, variable.levels - 1) if variable.named else 0 for variable in space.variables]
 
 
-def find_problems(source: str | Path) -> list[str]:
-    """Everything that is wrong with a study, a line each; empty if it can be loaded.
-
-    Names are judged once all keys have the right types, the robot and the parts once all names of the file are right.
-    """
-    path = _locate(source)
-    try:
-        raw = _parse(path)
-        if found := type_problems(raw):
-            return [f"{path}: {problem}" for problem in found]
-        config = convert(raw, path)
-        part_classes = {part.name: _part_class(part, path) for part in config.parts}
-        found = _lines(path, chain(reference_problems(config, part_classes), flight_problems(config)))
-        return found or _lines(path, _design_problems(_unchecked(raw, path, StudyData, "")))
-    except StudyError as error:
-        return [str(error)]
-
-
-def _lines(path: Path, problems: Iterable[Problem]) -> list[str]:
-    return list(dict.fromkeys(f"{path}: {key}: {reason}" for key, reason in problems))
-
-
-def _locate(source: str | Path) -> Path:
+def locate(source: str | Path) -> Path:
+    """The file of a study by name, path or folder. Raises: StudyError: there is none."""
     if str(source) in shipped_studies():
         return STUDIES / str(source) / "study.toml"
     path = Path(source).expanduser()
@@ -206,7 +186,8 @@ def own_functions(config: StudyConfig) -> list[str]:
     return sorted(name for name in {*config.objectives.names, *config.constraints.limits} if ":" in name)
 
 
-def _function(name: str, path: Path) -> Callable[[Mapping[str, Any]], float]:
+def function_of(name: str, path: Path) -> Callable[[Mapping[str, Any]], float]:
+    """A study's own function, `module:function`. Raises: StudyError: it cannot be had."""
     module_name, _, function_name = name.partition(":")
     try:
         module = _load_module(module_name, path.parent)
@@ -219,7 +200,8 @@ def _function(name: str, path: Path) -> Callable[[Mapping[str, Any]], float]:
     return cast("Callable[[Mapping[str, Any]], float]", function)
 
 
-def _part_class(part: PartConfig, path: Path) -> type[Part]:
+def part_class(part: PartConfig, path: Path) -> type[Part]:
+    """The class that shapes a part. Raises: StudyError: it cannot be had."""
     module_name, colon, class_name = part.shape.partition(":")
     if not colon:
         raise StudyError(f"{path}: parts.{part.name}.shape = {part.shape!r}: expected module:Class")

@@ -9,13 +9,13 @@ import numpy as np
 
 from codesign.errors import CodesignError, ModelError
 from codesign.geometry.shape import face_names
-from codesign.parts.load_case import held_face, pressing_direction
+from codesign.parts.load_case import held_face, pressing_direction, require_bearing
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignValue
 from codesign.robot.assembly import PartBody, assemble
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
-from codesign.study.checks import Problem, unknown
+from codesign.study.checking.problems import Problem, unknown
 from codesign.study.choices import numbers_of
 from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
 
@@ -100,11 +100,14 @@ def _face_problems(part: PartConfig, config: StudyConfig, built: Part) -> Iterat
             yield from unknown(key, "face", load.face, named)
             if load.face in held:
                 yield key, f"the load acts on {load.face!r}, which is held"
-            if load.pressing_n is not None and surface is not None and load.face in surface.face_names:
+            if surface is not None and load.face in surface.face_names:
                 try:
-                    pressing_direction(surface, load.face)
+                    if load.pressing_n is not None:
+                        pressing_direction(surface, load.face)
+                    if load.bearing_n is not None:
+                        require_bearing(surface, load.face, load.bearing_n)
                 except ModelError as error:
-                    yield key, f"pressing_n on {error}"
+                    yield key, f"{load.kind} on {error}"
 
 
 def _seat_problems(part: PartConfig, case: LoadCaseConfig, built: Part, faces: Sequence[str]) -> Iterator[Problem]:

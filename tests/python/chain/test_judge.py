@@ -8,6 +8,8 @@ from codesign.chain import documents
 from codesign.chain.judge import Limit, judge, limits
 from codesign.chain.study import load_study
 from codesign.errors import StudyError
+from codesign.problem import numbers
+from codesign.problem.numbers import Number
 from codesign.problem.quantities import QUANTITIES, quantity, read
 from codesign.study import new_study
 from codesign.study.config import LimitConfig
@@ -159,8 +161,10 @@ def test_a_lost_flight_is_infeasible_by_the_share_it_missed(config):
     assert judge(asked(config), document, {}).status == "feasible"
 
 
-def test_a_new_number_of_the_flight_takes_one_entry(monkeypatch, tmp_path):
+def test_a_new_number_of_the_flight_takes_two_entries(monkeypatch, tmp_path):
     """The example of CONTRIBUTING.md."""
+    new = Number("flight.torque_rms", "N·m", "root mean square of the joint torques")
+    monkeypatch.setattr(numbers, "NUMBERS", (*numbers.NUMBERS, new))
     monkeypatch.setitem(
         documents.FLIGHT_NUMBERS, "torque_rms", lambda log: float(np.sqrt(np.mean(np.square(log.torque))))
     )

@@ -12,7 +12,8 @@ from codesign.chain.study import Study, load_study
 from codesign.errors import StudyError
 from codesign.report.scene import robot_scene
 from codesign.report.study_words import flight_words
-from codesign.study.loading import find_problems, study_from
+from codesign.study.checking.everything import find_problems
+from codesign.study.loading import study_from
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 EXAMPLE = EXAMPLES / "parts_only"

@@ -11,7 +11,8 @@ from codesign.chain.study import Study
 from codesign.cli.options import parse_design
 from codesign.errors import DesignError, StudyError
 from codesign.study import new_study
-from codesign.study.loading import find_problems, study_from
+from codesign.study.checking.everything import find_problems
+from codesign.study.loading import study_from
 
 VARIABLES = """
 [variables.reach]

@@ -64,7 +64,9 @@ def _names(given: str) -> list[str]:
 @commands.command(epilog="Example: `codesign check my_study --time`")
 def check(
     study: StudyArgument = DEFAULT_STUDY,
-    time: Annotated[bool, typer.Option("--time", help="Evaluate one design, too: what an evaluation costs.")] = False,
+    time: Annotated[
+        bool, typer.Option("--time", help="Evaluate three designs, too: what they cost, what never changes.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> int:
     """Everything that is wrong with a study, at once; else what varies, what is minimized and what must hold.
@@ -75,7 +77,7 @@ def check(
     """
     from codesign.chain.study import load_study
     from codesign.cli.study_summary import measured, print_study, study_summary
-    from codesign.study.loading import find_problems
+    from codesign.study.checking.everything import find_problems
 
     problems = find_problems(study)
     loaded = None if problems else load_study(study)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from codesign.robot.description import RobotDescription
-from codesign.study.checks import Problem, repeated, unknown
+from codesign.study.checking.problems import Problem, repeated, unknown
 from codesign.study.config import StudyConfig
 from codesign.study.controller.config import MpcConfig, ServoConfig
 from codesign.study.flight_config import FlightConfig, TrajectoryConfig

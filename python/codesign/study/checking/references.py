@@ -5,23 +5,17 @@ Every check yields pairs (key, reason); a loader raises the first, `codesign che
 
 from __future__ import annotations
 
-import difflib
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
-from codesign.names import closest, nearest
+from codesign.names import nearest
 from codesign.parts.materials import material_names
 from codesign.parts.part import Part, parameter_units
-from codesign.problem.quantities import OF_A_PART, QUANTITIES, REDUCTIONS
+from codesign.study.checking.numbers import number_problems
+from codesign.study.checking.problems import Problem, repeated, unknown
 from codesign.study.choices import is_number
-from codesign.study.config import LimitConfig, PartConfig, StudyConfig, VariableConfig
+from codesign.study.config import PartConfig, StudyConfig, VariableConfig
 
-MOST_OBJECTIVES = 6
-MOST_NUMBERS = 8  # named instead of an unknown one
-REDUCED_PARTS = ("sum(parts.", "min(parts.", "max(parts.")  # paths of numbers that every study has
 MOST_LEVELS = 1_000_000  # grid values of a variable
-
-Problem = tuple[str, str]
 
 
 def reference_problems(config: StudyConfig, part_classes: Mapping[str, type[Part]]) -> Iterator[Problem]:
@@ -33,20 +27,8 @@ def reference_problems(config: StudyConfig, part_classes: Mapping[str, type[Part
         yield "parts", f"two parts have the name {twice!r}"
     for part in config.parts:
         yield from _part_problems(part, config, part_classes[part.name])
-    yield from _number_problems(config)
+    yield from number_problems(config)
     yield from _clearance_problems(config)
-
-
-def repeated(names: Iterable[str]) -> str | None:
-    """The first name that occurs twice."""
-    return next((name for name, count in Counter(names).items() if count > 1), None)
-
-
-def unknown(key: str, kind: str, name: str, known: Iterable[str]) -> Iterator[Problem]:
-    """The problem that a name is not among the known ones."""
-    known = list(known)
-    if name not in known:
-        yield key, f"no {kind} {name!r}; {nearest(name, known)}"
 
 
 def _variable_problems(config: StudyConfig) -> Iterator[Problem]:
@@ -164,69 +146,6 @@ def _offered_numbers(config: StudyConfig) -> dict[str, str]:
     for name, v in config.variables.items():
         offered |= {f"{name}.{key}": v.unit for key in v.chosen_keys if "." not in key}
     return offered
-
-
-def _number_problems(config: StudyConfig) -> Iterator[Problem]:
-    """Names of objectives and limits, as far as they are known before an evaluation."""
-    names = config.objectives.names
-    if not 1 <= len(names) <= MOST_OBJECTIVES:
-        yield "objectives", f"{len(names)} objectives: there must be one to {MOST_OBJECTIVES}"
-    if twice := repeated(names):
-        yield "objectives", f"{twice!r} is named twice"
-    for key, listed in (
-        ("objectives.minimize", config.objectives.minimize),
-        ("objectives.maximize", config.objectives.maximize),
-        ("constraints.limits", tuple(config.constraints.limits)),
-    ):
-        for name in listed:
-            if reason := _unknown_number(config, name):
-                yield key, reason
-    for name, limit in config.constraints.limits.items():
-        yield from _limit_problems(f"constraints.limits.{name}", limit)
-
-
-def _limit_problems(key: str, limit: LimitConfig) -> Iterator[Problem]:
-    if limit.minimum is None and limit.maximum is None:
-        yield key, "needs min, max or both"
-    if limit.minimum is not None and limit.maximum is not None and limit.minimum > limit.maximum:
-        yield key, f"min = {limit.minimum:g} is above max = {limit.maximum:g}"
-
-
-def _unknown_number(config: StudyConfig, name: str) -> str | None:
-    """Why there can be no such number; None if there may be."""
-    if ":" in name or name in QUANTITIES:
-        return None
-    function, bracket, rest = name.partition("(")
-    if bracket and (function not in REDUCTIONS or not rest.endswith(")")):
-        return f"{name!r}: expected {', '.join(f'{reduction}(…)' for reduction in REDUCTIONS)}"
-    path = rest.removesuffix(")") if bracket else name
-    first, _, rest = path.partition(".")
-    if first not in ("parts", "flight", "objective_families") or not rest:
-        return f"no number {name!r}; {_nearest_numbers(config, name)}"
-    if "*" in path.split(".") and not bracket:
-        return f"{name!r}: a path with * needs min(…), max(…) or sum(…) around it"
-    part = rest.partition(".")[0]
-    known = [part.name for part in config.parts]
-    if first == "parts" and part != "*" and part not in known:
-        return f"{name!r}: no part {part!r}; {nearest(part, known)}"
-    return None
-
-
-def _nearest_numbers(config: StudyConfig, name: str) -> str:
-    """Numbers that this study has, those first that are most like an unknown one."""
-    own = {key for key, known in QUANTITIES.items() if known.path.startswith(REDUCED_PARTS)}
-    flown = {key for key in QUANTITIES if key not in own and config.flight is not None}
-    of_parts = {f"parts.{part.name}.{key}" for part in config.parts for key in OF_A_PART}
-    like = difflib.SequenceMatcher(b=name)
-
-    def likeness(known: str) -> tuple[float, str]:
-        like.set_seq1(known)
-        return -like.ratio(), known
-
-    ranked = sorted(own | flown | of_parts, key=likeness)
-    found = closest(name, ranked)
-    meant = f"did you mean {found!r}? " if found else ""
-    return f"{meant}nearest of those that this study has: {', '.join(ranked[:MOST_NUMBERS])}"
 
 
 def _clearance_problems(config: StudyConfig) -> Iterator[Problem]:

@@ -11,7 +11,7 @@ from codesign.errors import UrdfError
 from codesign.problem.quantities import FAMILY, QUANTITIES
 from codesign.robot.clearance import InterferenceSettings, link_pieces
 from codesign.robot.description import RobotDescription
-from codesign.study.checks import Problem, repeated, unknown
+from codesign.study.checking.problems import Problem, repeated, unknown
 from codesign.study.config import StudyConfig
 from codesign.study.controller.checks import controller_names, controller_problems
 from codesign.study.flight_config import FlightConfig

@@ -1,0 +1,1 @@
+"""What is wrong with a study: every check yields pairs (key, reason)."""
