@@ -149,7 +149,7 @@ def complete(raw: dict[str, Any]) -> None:
         *raw["parts"][0].pop("loads"),
         {"face": "seat", "force_n": [0.0, 0.0, -9.0], "point_mm": [1.0, 0.0, 0.0], "moment_n_m": [1.0, 0.0, 0.0]},
         {"face": "seat", "interface": interface, "force_n": [0.0, 0.0, -9.0], "moment_n_m": [1.0, 0.0, 0.0]},
-        {"face": "seat", "bearing_n": [0.0, 9.0, 0.0]},
+        {"face": "seat", "bearing_n": [0.0, 0.0, 9.0]},
         {"face": "seat", "moment_n_m": [1.0, 0.0, 0.0]},
         {"face": "seat", "pressure_mpa": 1.0},
         {"face": "seat", "traction_mpa": [0.0, 0.0, -1.0]},

@@ -312,8 +312,8 @@ def require_bearing(surface: fem.SurfaceMesh, face: str, force: ArrayLike) -> No
     along = axes[:, values < FLAT * values[2]].T @ wanted  # directions that no normal has a part in
     if np.linalg.norm(along) > ALONG_AXIS * np.linalg.norm(wanted):
         raise ModelError(
-            f"face {face!r}: {np.linalg.norm(along):.4g} N of it are along the axis of the bore, where a pin slides; "
-            "give that part as a force of its own, force_n"
+            f"face {face!r}: {np.linalg.norm(along):.4g} N of it are along the face (the axis of a bore), where a pin "
+            "slides; give that part as a force of its own, force_n"
         )
     if not (normals @ wanted < 0.0).any():
         raise ModelError(f"face {face!r}: the force points away from the face, which a pin only presses on")

@@ -140,7 +140,7 @@ def test_what_no_pin_can_do_is_refused_with_part_and_case(plate):
     study = load_study(folder)
     axial = plate(("[0.0, 100.0, 0.0]", "[0.0, 0.0, 100.0]"))
     (told,) = find_problems(axial)
-    assert "parts.plate.loads: bearing_n on face 'bore': 100 N of it are along the axis of the bore" in told
+    assert "parts.plate.loads: bearing_n on face 'bore': 100 N of it are along the face (the axis of a bore)" in told
     settings = stress_settings(study.config, "plate")
     (case,) = settings.cases
     (load,) = case.loads
