@@ -71,9 +71,11 @@ struct StaticResult {
   double energy_error = 0.0;      // estimated relative error in the energy norm
   Eigen::VectorXd element_error;  // (m) Pa, see RecoveryError
   Eigen::Vector3d peak_position = Eigen::Vector3d::Zero();
-  double stress_50 = 0.0;      // Pa, von Mises exceeded in stress_volume
-  double safety_factor = 0.0;  // yield strength / peak_stress; infinite if nothing is stressed
-  NodeFlags counts_for_peak;   // (n) see counted_nodes
+  double border_distance = 0.0;    // m, of peak_position from the nearest border of a clamp or load
+  bool peak_at_exclusion = false;  // see beside_exclusion in peak_stress.hpp
+  double stress_50 = 0.0;          // Pa, von Mises exceeded in stress_volume
+  double safety_factor = 0.0;      // yield strength / peak_stress; infinite if nothing is stressed
+  NodeFlags counts_for_peak;       // (n) see counted_nodes
   LeftOut left_out;
   double exclusion_smallest = 0.0, exclusion_largest = 0.0;  // m, of the distances kept
   double residual = 0.0;  // |K u - f| over the free components, relative to the larger of the

@@ -140,6 +140,23 @@ PeakStress stress_left_out(const TetMesh& mesh, const Stresses& nodal, const Exc
   return largest_sample(mesh, nodal, zone, true);
 }
 
+bool beside_exclusion(const TetMesh& mesh, const PeakStress& peak, const ExclusionZone& zone) {
+  constexpr double kBeside = 0.2;  // of the longest edge; face samples lie a tenth of it apart
+  if (!peak.read()) return false;
+  const int corners = peak.triangle >= 0 ? 3 : 4;
+  double longest = 0.0;
+  for (int i = 0; i < corners; ++i) {
+    for (int k = 0; k < i; ++k) {
+      const auto node = [&](int corner) {
+        return peak.triangle >= 0 ? mesh.boundary(peak.triangle, corner)
+                                  : mesh.tets(peak.element, corner);
+      };
+      longest = std::max(longest, (mesh.nodes.row(node(i)) - mesh.nodes.row(node(k))).norm());
+    }
+  }
+  return zone.touches_ball(peak.position, kBeside * longest);
+}
+
 VolumeStress volume_stress(const TetMesh& mesh, const Stresses& nodal, const PointStresses& points,
                            const ExclusionZone& zone, double volume) {
   Eigen::Matrix<double, kTetNodes, 4> values;

@@ -55,6 +55,11 @@ PeakStress peak_stress(const TetMesh& mesh, const Stresses& nodal, const Exclusi
 // The largest such stress inside the zone; value 0 if the zone holds no point of the surface.
 PeakStress stress_left_out(const TetMesh& mesh, const Stresses& nodal, const ExclusionZone& zone);
 
+// True if the peak lies within a fifth of its face's (element's) longest edge of what the zone
+// leaves out: then it is what the growing stress beside a clamp has come down to at that distance,
+// a convention rather than a property of the part.
+bool beside_exclusion(const TetMesh& mesh, const PeakStress& peak, const ExclusionZone& zone);
+
 // The same field inside the part, at the four points of each element, outside the zone.
 struct VolumeStress {
   double exceeded = 0.0;  // Pa, in the given volume; the smallest stress if there is less material

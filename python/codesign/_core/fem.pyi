@@ -732,6 +732,11 @@ class StaticResult:
     Displacement, stress and safety factor of a part.
     """
     @property
+    def border_distance(self) -> float:
+        """
+        m, of peak_position from the nearest border of a clamp or load
+        """
+    @property
     def counts_for_peak(self) -> typing.Annotated[numpy.typing.NDArray[numpy.bool], "[m, 1]"]:
         """
         (n) False where the peak stress is not read
@@ -780,6 +785,11 @@ class StaticResult:
     def max_displacement(self) -> float:
         """
         m
+        """
+    @property
+    def peak_at_exclusion(self) -> bool:
+        """
+        True if the peak lies right beside what the exclusion leaves out
         """
     @property
     def peak_position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:

@@ -52,7 +52,9 @@ def strength_document(result: fem.StaticResult) -> dict[str, Any]:
     """What decides the safety factor, for JSON, SI units.
 
     `safety_factor` is None if nothing is stressed, `left_out` (the largest stress that the exclusion leaves out) if it
-    leaves out nothing. `peak_resolved` is False if the estimated error exceeds half of the peak.
+    leaves out nothing. `peak_at_exclusion` is True if the peak lies right beside what the exclusion leaves out;
+    `border_distance`: of the peak from the nearest clamp or load, None without any. `peak_resolved` is False if the
+    estimated error exceeds half of the peak.
     """
     hidden = result.left_out
     left_out = {
@@ -64,6 +66,8 @@ def strength_document(result: fem.StaticResult) -> dict[str, Any]:
         "safety_factor": result.safety_factor if math.isfinite(result.safety_factor) else None,
         "peak_stress": result.peak_stress,
         "peak_position": [float(x) for x in result.peak_position],
+        "border_distance": result.border_distance if math.isfinite(result.border_distance) else None,
+        "peak_at_exclusion": result.peak_at_exclusion,
         "peak_resolved": result.peak_resolved,
         "stress_50": result.stress_50,
         "stress_error": result.stress_error,
@@ -82,14 +86,18 @@ class Confirmation:
     confirmed: dict[str, Any]
 
 
+def confirming(settings: StressSettings) -> StressSettings:
+    """Settings that analyze the full geometry on a mesh refined at the peak until the tolerance is reached."""
+    return replace(settings, geometry="full", accuracy="converged")
+
+
 def confirm(part: Part, settings: StressSettings) -> Confirmation:
     """Analyses a part with the given settings, and its full geometry on a fine mesh until the tolerance is reached.
 
     Raises: MeshError, SolverError, GeometryError.
     """
     mass = part.mass_properties()
-    full = replace(settings, geometry="full", accuracy="converged")
     analyzed, confirmed = (
-        part_document(mass, _core.analyze_part(part_case(part, chosen))) for chosen in (settings, full)
+        part_document(mass, _core.analyze_part(part_case(part, chosen))) for chosen in (settings, confirming(settings))
     )
     return Confirmation(analyzed, confirmed)

@@ -106,3 +106,14 @@ def test_a_peak_at_a_point_force_is_not_resolved():
     spread = fem.solve_static(mesh, STEEL, [root], [fem.Force(fem.faces_with_normal([1, 0, 0]), [1e3, 0, 0])])
     assert spread.peak_resolved
     assert spread.stress_50 <= spread.peak_stress
+
+
+def test_a_peak_right_beside_what_a_clamp_leaves_out_is_told() -> None:
+    """A cantilever's stress is largest at its clamp: read beside the exclusion, unless nothing is left out."""
+    mesh, forces = bar((12, 3, 3)), [fem.Force(TIP, [0.0, 0.0, -100.0])]
+    beside = fem.solve_static(mesh, STEEL, [fem.Support(ROOT)], forces, exclusion_distance=5e-3)
+    assert beside.peak_at_exclusion
+    assert 5e-3 < beside.border_distance < 5e-3 + 0.2 * np.hypot(8.4e-3, 6.7e-3)
+    whole = fem.solve_static(mesh, STEEL, [fem.Support(ROOT)], forces, exclusion_distance=0.0)
+    assert not whole.peak_at_exclusion
+    assert whole.border_distance < 1e-6
