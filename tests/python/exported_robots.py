@@ -9,8 +9,8 @@ from codesign import dynamics as dyn
 from codesign.chain.chain import build_parts, build_robot
 from codesign.chain.flight import find_trajectory, flight_settings
 from codesign.chain.study import load_study
-from codesign.cli.design import placed_components
-from codesign.cli.robot_files import flown_postures, write_urdf
+from codesign.cli.export.design import placed_components
+from codesign.cli.export.robot_files import flown_postures, write_urdf
 from codesign.robot.collisions import ignored_pairs
 from codesign.robot.description import RobotDescription
 from codesign.robot.formats.drake_filters import NAMESPACE, urdf_collision_filters

@@ -190,7 +190,8 @@ def _reason(
     lost: tuple[str, ...], carried: tuple[float, float], axes: list[Array], settings: dyn.FlightSettings
 ) -> str | None:
     several = len(axes) > 1
-    jets = f"the {len(axes)} jets" if several else "the only jet"
+    kind = "propeller" if any(jet.reaction for jet in settings.actuators) else "jet"
+    jets = f"the {len(axes)} {kind}s" if several else f"the only {kind}"
     if lost:
         parallel = several and all(np.linalg.norm(np.cross(axis, axes[0])) < RANK_TOLERANCE for axis in axes)
         dragless = not any(jet.reaction for jet in settings.actuators)

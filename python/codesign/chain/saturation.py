@@ -19,9 +19,9 @@ BUSY = 0.5  # mean thrust rate over its limit from which the gains are named
 # In the order of asking: number of the flight, share from which it explains a loss, what it says.
 EXPLANATIONS = (
     ("thrust_rate_share", BUSY, "the mean thrust rate is {share:.0%} of its limit: the gains are too high for the "
-     "jets; `codesign tune` flies others"),
-    ("thrust_at_most", OFTEN, "a jet gave its largest thrust in {share:.0%} of the samples: the jets are too weak"),
-    ("thrust_at_least", OFTEN, "a jet gave its least thrust in {share:.0%} of the samples: the jets are badly "
+     "thrusters; `codesign tune` flies others"),
+    ("thrust_at_most", OFTEN, "a thruster gave its largest thrust in {share:.0%} of the samples: they are too weak"),
+    ("thrust_at_least", OFTEN, "a thruster gave its least thrust in {share:.0%} of the samples: they are badly "
      "balanced, or too strong"),
     ("torque_at_limit", OFTEN, "a joint torque was at its limit in {share:.0%} of the samples"),
     ("joint_at_limit", OFTEN, "a joint was at the end of its range in {share:.0%} of the samples"),

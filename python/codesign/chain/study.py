@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from codesign.chain import chain, lazy
+from codesign.chain import chain, confirmed, lazy
 from codesign.chain.controllability import Controllability, grounded, study_controllability
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignValue
@@ -38,7 +38,12 @@ class Study(StudyData):
         trajectory: str | None = None,
         cache: PartCache | None = None,
     ) -> Evaluation:
-        """One design through the whole chain; `trajectory`: a name of the study, default its own."""
+        """One design through the whole chain; `trajectory`: a name of the study, default its own.
+
+        With `chain.confirmed.CONFIRMED` in its place nothing flies: parts alone, in full on fine meshes.
+        """
+        if trajectory == confirmed.CONFIRMED:
+            return confirmed.evaluate_confirmed(self, self.space.design(theta), cache)
         return chain.evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
 
     def controllability(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> Controllability:

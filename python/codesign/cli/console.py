@@ -18,9 +18,11 @@ from codesign.problem.quantities import FAMILY, Quantity, quantity
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from codesign.followup.confirmation import Confirmed
     from codesign.followup.tables import Table as PartTable
     from codesign.parts.strength import Confirmation
     from codesign.problem.evaluation import Evaluation
+    from codesign.report.data import ReportData
     from codesign.report.tolerances import Tolerances
     from codesign.storage.records import Record
     from codesign.storage.runs import Run
@@ -80,6 +82,43 @@ def _quantity(evaluation: Evaluation, key: str) -> Quantity:
     families = evaluation.objective_families.items()
     of = (family for family, values in families if key in FAMILY and values.get(key) == evaluation.objectives.get(key))
     return quantity(key, next(of, "rms"))
+
+
+def print_verdict(verdict: Mapping[str, Any], only_reasons: bool = False) -> None:
+    """Whether a design may be built, as `Verdict.document`. only_reasons: nothing of one that may."""
+    if verdict["may_be_built"]:
+        if not only_reasons:
+            out.print(Text.assemble((verdict["title"], "bold green"), ": nothing that was checked speaks against it"))
+        return
+    head = "not to be built" if verdict["kind"] == "barred" else "not to be built yet"
+    out.print(Text.assemble((head, "bold yellow"), ": ", " ".join(verdict["reasons"])), soft_wrap=True)
+    for text in verdict["remedies"]:
+        out.print(text, soft_wrap=True)
+
+
+def print_confirmed(run: ReportData, found: Sequence[Confirmed]) -> None:
+    """Designs of a run before and after their confirmation, and which one is recommended now."""
+    from codesign.report.objections import error_share
+    from codesign.report.verdict import run_verdict
+
+    def error(numbers: Mapping[str, Any]) -> str:
+        share = error_share(numbers)
+        return "-" if share is None else f"{100 * share:.1f} %"
+
+    table = Table("design", "part", "load case", "safety factor", "error", "finer mesh", "error")
+    for each in found:
+        if not each.found.parts:
+            out.print(f"design {each.number} could not be confirmed: {each.found.reason}", soft_wrap=True)
+        for name, part in each.found.parts.items():
+            for case, numbers in part["cases"].items():
+                before = each.evaluation.parts[name].get("cases", {}).get(case, each.evaluation.parts[name])
+                cells = (text for one in (before, numbers) for text in (_factor(one, 2), error(one)))
+                table.add_row(str(each.number), name, case, *cells)
+    out.print(table)
+    if run.recommended is None:
+        out.print("the report recommends no design", soft_wrap=True)
+        return
+    print_verdict(run_verdict(run, run.recommended).document())
 
 
 def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:

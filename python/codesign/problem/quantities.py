@@ -65,7 +65,7 @@ _TABLE = (
         "Root mean square of the difference between commanded and reached joint velocities, summed over the joint "
         "groups by their weights.",
     ),
-    Quantity("thrust", "Thrust", "N", "Sum of the jet thrusts, averaged over the flight: what flying costs in fuel."),
+    Quantity("thrust", "Thrust", "N", "Sum of all thrusts, averaged over the flight: what flying costs."),
     Quantity("mass", "Mass of the parts", "kg", "Sum over the parts, each counted once.", path="sum(parts.*.mass)"),
     Quantity(
         "safety_factor",
@@ -122,30 +122,34 @@ _TABLE = (
         "plume_clearance",
         "Plume clearance",
         "mm",
-        "Smallest gap beside the jets; below 0 they hit.",
+        "Smallest gap beside the plumes of jets; below 0 they hit.",
         1 / MILLIMETER,
         "flight.interference.plume_clearance",
     ),
     Quantity(
         "max_com_error",
-        "Largest position error",
+        "Largest tracking error",
         "m",
         "Of the center of mass, during the flight.",
         path="flight.max_com_error",
     ),
     Quantity("max_torque", "Largest joint torque", "N·m", "During the flight.", path="flight.max_torque"),
-    Quantity("max_thrust", "Largest thrust of a jet", "N", "During the flight.", path="flight.max_thrust"),
-    Quantity("min_thrust", "Smallest thrust of a jet", "N", "During the flight.", path="flight.min_thrust"),
+    Quantity(
+        "max_thrust", "Largest thrust", "N", "Of one jet or propeller, during the flight.", path="flight.max_thrust"
+    ),
+    Quantity(
+        "min_thrust", "Smallest thrust", "N", "Of one jet or propeller, during the flight.", path="flight.min_thrust"
+    ),
     Quantity(
         "tracking",
-        "Position error",
+        "Tracking error",
         "m",
         "Root mean square over the flight of the center of mass's distance from its reference.",
         path="flight.tracking",
     ),
     Quantity(
         "tracking_pose",
-        "Pose error",
+        "Tracking error of the pose",
         "m",
         "Root mean square over the flight of position and attitude error, a radian counted as a meter.",
         path="flight.tracking_pose",
@@ -170,11 +174,20 @@ _TABLE = (
         "hover_margin",
         "Thrust left in hover",
         "",
-        "1 less the largest share of its limit that a jet needs to hover at the start.",
+        "1 less the largest share of its limit that a thrust needs to hover at the start.",
         path="flight.hover_margin",
     ),
 )
 QUANTITIES = {quantity.key: quantity for quantity in _TABLE}
+BY_PATH = {quantity.path: quantity for quantity in _TABLE if quantity.path}
+# Units of own functions by the last words of their name: `power_in_watts` is shown as "Power (W)".
+UNIT_WORDS = {
+    "amperes": "A", "cubic_meters": "m³", "degrees": "°", "dollars": "$", "euros": "€", "grams": "g", "hertz": "Hz",
+    "hours": "h", "joules": "J", "kelvins": "K", "kilograms": "kg", "kilowatts": "kW", "liters": "l",
+    "megapascals": "MPa", "meters": "m", "meters_per_second": "m/s", "millimeters": "mm", "minutes": "min",
+    "newton_meters": "N·m", "newtons": "N", "pascals": "Pa", "percent": "%", "radians": "rad", "seconds": "s",
+    "square_meters": "m²", "volts": "V", "watt_hours": "Wh", "watts": "W",
+}  # fmt: skip
 OF_A_PART = {
     "mass": "mass",
     "safety_factor": "safety factor",
@@ -193,18 +206,33 @@ def words(key: str) -> str:
 
 
 def quantity(key: str, family: str = "rms") -> Quantity:
-    """What the table says of a key; a path, or an own function's name, is its own label.
+    """What the table says of a key, a short name or a path; another path is its own label.
 
-    A leading minus gives the quantity to be maximized. family: the objective family, which decides the unit.
+    So is an own function's name, `module:power_in_watts`; words after `_in_` are its unit. A leading minus gives the
+    quantity to be maximized. family: the objective family, which decides the unit.
     """
     if key.startswith(MINUS):
         positive = quantity(key[1:], family)
         return replace(positive, key=key, label=f"−{positive.label}", meaning=f"Maximized. {positive.meaning}", path="")
-    known = QUANTITIES.get(key) or _of_a_part(key) or Quantity(key, words(key.rpartition(":")[2]), path=key)
+    known = QUANTITIES.get(key) or _by_path(key) or _of_a_part(key) or _own(key)
     if key in FAMILY and family != "rms":
         unit = "" if key in UNITLESS_IN.get(family, ()) else known.unit
         return replace(known, unit=unit, meaning=known.meaning if key == "thrust" else "")
     return known
+
+
+def _by_path(key: str) -> Quantity | None:
+    """The table's quantity at a path, under the path as its key: `flight.tracking` is `tracking`."""
+    known = BY_PATH.get(key)
+    return None if known is None else replace(known, key=key)
+
+
+def _own(key: str) -> Quantity:
+    """A number that only the study knows."""
+    name = key.rpartition(":")[2]
+    base, _, unit = name.rpartition("_in_")
+    known = base and ":" in key and unit in UNIT_WORDS
+    return Quantity(key, words(base if known else name), UNIT_WORDS[unit] if known else "", path=key)
 
 
 def _of_a_part(key: str) -> Quantity | None:

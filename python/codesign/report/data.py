@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,7 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from codesign.problem.design_space import DesignSpace, Variable
+from codesign.chain.confirmed import with_confirmed
+from codesign.problem.design_space import DesignSpace, DesignValue, Variable
 from codesign.problem.evaluation import Evaluation, least_infeasible
 from codesign.problem.pareto import non_dominated
 from codesign.problem.quantities import Quantity, words
@@ -35,11 +37,18 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class PartWords:
-    """How a part is loaded and held, of what it is made; warning: why its mass and stress do not belong together."""
+    """How a part is loaded and held, of what it is made.
+
+    load: all of it. warning: why its mass and stress do not belong together. cases: load case -> its loads. held: its
+    supports. carried: the rigid bodies on its faces, "" if there are none.
+    """
 
     load: str
     material: str
     warning: str = ""
+    cases: dict[str, str] = field(default_factory=dict)
+    held: str = ""
+    carried: str = ""
 
 
 @dataclass(frozen=True)
@@ -50,10 +59,12 @@ class ReportData:
     baseline: the design that everything is compared with, None if the study names none or it could not be evaluated.
     limits: constraint -> (sign, limit in SI units), sign ">=" or "<="; the others are only watched.
     provenance: what made the numbers, for people.
+    export_original: what exports a design by its values.
     labels: variable -> name for people.   notes: what a reader must know before trusting the numbers.
     baseline_missing: why there is no baseline.   flight_words: what one flight is.
     tolerances: chosen designs as they would be made, if they were sampled.
-    part_words: part -> its load case and material.
+    part_words: part -> its load case and material.   stress_tolerance: relative error of stresses that is asked for.
+    confirmed: values of a design -> its parts on finer meshes, or why there are none.
     compared: other runs whose fronts are shown beside this one's.
     """
 
@@ -69,17 +80,24 @@ class ReportData:
     limits: dict[str, tuple[str, float]] = field(default_factory=dict)
     provenance: dict[str, str] = field(default_factory=dict)
     labels: dict[str, str] = field(default_factory=dict)
-    export_command: str = "codesign export"
+    export_original: str = "codesign export"
     notes: tuple[str, ...] = ()
     baseline_missing: str = "The study names no original design to compare with."
     part_words: dict[str, PartWords] = field(default_factory=dict)
     flight_words: str = ""
     tolerances: Tolerances | None = None
+    stress_tolerance: float | None = None
+    confirmed: dict[tuple[DesignValue, ...], Evaluation] = field(default_factory=dict)
     compared: tuple[ComparedRun, ...] = ()
 
     def label(self, variable: Variable) -> str:
         """A variable's name for people."""
         return words(self.labels.get(variable.name) or variable.name)
+
+    @property
+    def export_command(self) -> str:
+        """What exports an entry of the run, but for its number and the folder."""
+        return f"codesign export --run {shlex.quote(str(self.directory))}"
 
     @property
     def space(self) -> DesignSpace:
@@ -129,9 +147,17 @@ class ReportData:
 
     def objections(self, position: int) -> tuple[Objection, ...]:
         """What speaks against building an entry."""
-        evaluation = self.entries[position].evaluation
+        return self.against(self.entries[position].evaluation)
+
+    def against(self, evaluation: Evaluation) -> tuple[Objection, ...]:
+        """What speaks against building a design of this study; its strength is judged as confirmed, if it is."""
         made = self.tolerances.of(evaluation.design) if self.tolerances is not None else None
-        return objections(evaluation, self.limits, made)
+        return objections(self.as_confirmed(evaluation), self.limits, made, self.stress_tolerance)
+
+    def as_confirmed(self, evaluation: Evaluation) -> Evaluation:
+        """An evaluation with its parts as confirmed, where the run knows that."""
+        found = self.confirmed.get(tuple(evaluation.design.values()))
+        return evaluation if found is None else with_confirmed(evaluation, found.parts)
 
     @cached_property
     def choices(self) -> list[int]:

@@ -11,7 +11,13 @@ from codesign.problem.quantities import words
 from codesign.report.tolerances import MadeDesign
 from codesign.units import MILLIMETER
 
-UNSETTLED = ("have a stress that is not settled", "keep the safety factor by less than its error")
+UNSETTLED = (
+    "have a stress that is not settled",
+    "keep the safety factor by less than its error",
+)  # kinds that a finer mesh may lift
+COMFORT = (
+    2.0  # times its estimated error: a safety factor that keeps its limit even then is settled, whatever the error
+)
 Limits = Mapping[str, tuple[str, float]]  # constraint -> (">=" or "<=", bound in SI units)
 
 
@@ -28,8 +34,14 @@ class Objection:
     final: bool
 
 
-def objections(evaluation: Evaluation, limits: Limits, made: MadeDesign | None = None) -> tuple[Objection, ...]:
-    """Everything that speaks against a design, the final ones first. made: its samples within the tolerances."""
+def objections(
+    evaluation: Evaluation, limits: Limits, made: MadeDesign | None = None, tolerance: float | None = None
+) -> tuple[Objection, ...]:
+    """Everything that speaks against a design, the final ones first.
+
+    made: its samples within the tolerances. tolerance: relative error of the stress that the study asks for, None if it
+    is not known.
+    """
     found = []
     if made is not None and not made.robust:
         lost, reason = made.samples - made.feasible, f" ({made.reasons[0]})" if made.reasons else ""
@@ -39,7 +51,14 @@ def objections(evaluation: Evaluation, limits: Limits, made: MadeDesign | None =
         reason = evaluation.reason or "a constraint is violated"
         found.append(Objection(f"are {evaluation.status}", f"it is {evaluation.status}: {reason}", True))
     found += [
-        o for o in (_overlap(evaluation), _blast(evaluation), *_parts(evaluation, limits), _control(evaluation)) if o
+        o
+        for o in (
+            _overlap(evaluation),
+            _blast(evaluation),
+            *_parts(evaluation, limits, tolerance),
+            _control(evaluation),
+        )
+        if o
     ]
     return tuple(sorted(found, key=lambda o: not o.final))
 
@@ -62,33 +81,83 @@ def _blast(evaluation: Evaluation) -> Objection | None:
     return Objection("blow a plume on the robot", f"a plume reaches {_mm(-gap)} deep into the robot{hit}", True)
 
 
-def _parts(evaluation: Evaluation, limits: Limits) -> list[Objection]:
-    """Parts whose stress is not settled, or whose safety factor keeps its limit only by less than its error."""
-    found = []
+def _parts(evaluation: Evaluation, limits: Limits, tolerance: float | None) -> list[Objection]:
+    """Parts of a feasible design whose strength is not settled, each with its worst load case."""
+    found: list[Objection] = []
+    if evaluation.status != "feasible":
+        return found
     for name, part in evaluation.parts.items():
-        least = least_factor(name, part, limits)
-        factor, peak, error = (part.get(key) for key in ("safety_factor", "peak_stress", "stress_error"))
-        share = error / peak if error and peak else 0.0
-        spelled, estimate = words(name).lower(), f"{100 * share:.1f}\u202f%"
-        if part.get("tolerance_reached") is False:
-            text = f"the stress of the {spelled} is not settled: its error is estimated at {estimate}"
-            found.append(Objection(UNSETTLED[0], text, False))
-        if factor and least and factor >= least > factor / (1.0 + share):
-            text = f"the safety factor {factor:.1f} of the {spelled} keeps its limit {least:g} by less than its error"
-            found.append(Objection(UNSETTLED[1], text, False))
+        cases = part.get("cases") or {part.get("load_case", ""): part}
+        against = [each for case in cases if (each := _strength(name, part, case, limits, tolerance)) is not None]
+        found += sorted(against, key=lambda objection: not objection.final)[:1]
     return found
+
+
+def _strength(
+    name: str, part: Mapping[str, Any], case: str, limits: Limits, tolerance: float | None
+) -> Objection | None:
+    """What the error of a load case's stress says against a part.
+
+    The safety factor is judged as an interval: where it keeps its limit even less COMFORT times its estimated error,
+    the error does not matter, however large; where no limit is set, it must be within the tolerance.
+    """
+    numbers = part.get("cases", {}).get(case, part)
+    factor, share, least = numbers.get("safety_factor"), error_share(numbers), least_factor(name, case, limits)
+    of = f"{words(name).lower()}" + (f" in load case {words(case).lower()}" if len(part.get("cases", {})) > 1 else "")
+    if factor is not None and least is not None and share is not None:
+        if factor < least:
+            text = f"a finer mesh gives the {of} a safety factor of {factor:.3g}, below its limit {least:g}"
+            return Objection("miss the limit of the safety factor on a finer mesh", text, True)
+        if least > factor / (1.0 + share):
+            text = f"the safety factor {factor:.3g} of the {of} keeps its limit {least:g} by less than its error"
+            return Objection(UNSETTLED[1], f"{text}, {_percent(share)}", False)
+    asked = f" (tolerance {_percent(tolerance)})" if tolerance is not None else ""
+    on = " on meshes refined at the peak" if part.get("confirmed") else ""
+    told = f"the stress of the {of} is not settled: its error{on} is estimated at {_percent(share or 0.0)}{asked}"
+    if numbers.get("peak_resolved") is False:
+        return Objection(UNSETTLED[0], f"{told}, too much to tell anything", False)
+    governs = case == part.get("load_case", case)
+    loose = governs and part.get("tolerance_reached") is False
+    if not loose and (tolerance is None or share is None or share <= tolerance):
+        return None
+    if factor is None or least is None:
+        return Objection(UNSETTLED[0], told, False)
+    lowest = factor / (1.0 + COMFORT * (share or 0.0))
+    if lowest >= least:
+        return None
+    text = f"{told}, and the safety factor {factor:.3g} less twice that, {lowest:.3g}, misses its limit {least:g}"
+    return Objection(UNSETTLED[0], text, False)
+
+
+def error_share(numbers: Mapping[str, Any]) -> float | None:
+    """Estimated error of a peak stress relative to it; None where there is none."""
+    peak, error = numbers.get("peak_stress"), numbers.get("stress_error")
+    return error / peak if peak and error is not None else None
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3g}\u202f%"
 
 
 def singular(kind: str) -> str:
     """An objection's kind said of one design: `have a stress …` -> `has a stress …`."""
     verb, _, rest = kind.partition(" ")
-    return f"{ {'have': 'has', 'are': 'is'}.get(verb, verb + 's') } {rest}"
+    return f"{ {'have': 'has', 'are': 'is', 'miss': 'misses'}.get(verb, verb + 's') } {rest}"
 
 
-def least_factor(name: str, part: Mapping[str, Any], limits: Limits) -> float | None:
-    """Safety factor that is asked of a part: of the load case that governs it, or of all."""
-    asked = limits.get(f"parts.{name}.cases.{part.get('load_case')}.safety_factor") or limits.get("safety_factor")
-    return None if asked is None else asked[1]
+def least_factor(name: str, case: str, limits: Limits) -> float | None:
+    """Safety factor that is asked of a load case of a part: the largest of the limits that mean it."""
+    return _least(f"parts.{name}.cases.{case}.safety_factor", name, "safety_factor", limits)
+
+
+def least_frequency(name: str, limits: Limits) -> float | None:
+    """First natural frequency [Hz] that is asked of a part."""
+    return _least("", name, "first_frequency", limits)
+
+
+def _least(own: str, name: str, number: str, limits: Limits) -> float | None:
+    keys = (own, f"parts.{name}.{number}", f"min(parts.*.{number})", number)
+    return max((limits[key][1] for key in keys if limits.get(key, ("", 0.0))[0] == ">="), default=None)
 
 
 def _control(evaluation: Evaluation) -> Objection | None:

@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from codesign.chain.confirmed import CONFIRMED
 from codesign.chain.judge import limits
-from codesign.errors import CodesignError
+from codesign.errors import CodesignError, DesignError
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 from codesign.problem.quantities import words
@@ -50,21 +51,23 @@ def read_report_data(
         baseline=evaluated,
         waiting=run.counts.get("queued", 0) + run.counts.get("running", 0),
         planned=None if run.finished else run.settings.get("evaluations"),
-        limits=_limits(study) if study is not None else {},
+        limits=demands(study) if study is not None else {},
         provenance=provenance(run),
-        export_command=f"codesign export --study {run.study['source']}",
+        export_original=f"codesign export --study {run.study['source']}",
         labels={name: v.label for name, v in study.config.variables.items()} if study is not None else {},
         notes=_notes(run, study),
         baseline_missing=_baseline_missing(study) or ReportData.baseline_missing,
         part_words=part_words(study.config) if study is not None else {},
         flight_words=flight_words(study.config) if study is not None else "",
         tolerances=load_tolerances(Path(directory)),
+        confirmed={tuple(r.evaluation.design.values()): r.evaluation for r in run.records if r.trajectory == CONFIRMED},
+        stress_tolerance=study.config.fem.tolerance if study is not None else None,
     )
     others = tuple(load_comparison(Path(other), read, run.study["name"]) for other in compare)
     return replace(read, compared=others) if others else read
 
 
-def _limits(study: Any) -> dict[str, tuple[str, float]]:
+def demands(study: Any) -> dict[str, tuple[str, float]]:
     """What the study demands of its constraints, SI units."""
     bounds = {}
     for limit in limits(study.config):
@@ -94,7 +97,10 @@ def same_study(directory: Path, study: Any) -> bool:
 def _stored_baseline(run: Run, study: Any) -> Evaluation | None:
     if study is None or study.baseline is None:
         return None
-    grid = run.space.indices(study.baseline)
+    try:
+        grid = run.space.indices(study.baseline)
+    except DesignError:  # the study has other variables by now
+        return None
     for record in run.records:
         if record.grid == grid and record.trajectory == "":
             return record.evaluation

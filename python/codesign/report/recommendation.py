@@ -11,12 +11,11 @@ import numpy as np
 
 from codesign.problem.quantities import words
 from codesign.report.data import ReportData
-from codesign.report.objections import UNSETTLED, least_factor, singular
+from codesign.report.objections import least_factor, singular
 from codesign.report.words import EQUAL, combinations, listed, percent, plural
 from codesign.units import MILLIMETER
 
 CLEARLY = 0.1  # logarithm of the product of the objectives: a tenth better in one of them, say
-CLOSER = "codesign evaluate with --confirm analyzes its parts in full on finer meshes."
 SETTLED = 0.01  # of the front's hypervolume: what the last quarter of a settled search adds at most
 
 
@@ -130,7 +129,7 @@ def strength(run: ReportData) -> str:
     factors = {name: factor for name, part in parts.items() if (factor := part.get("safety_factor"))}
     if not factors or not math.isfinite(min(factors.values())):
         return ""
-    limits = {name: least_factor(name, parts[name], run.limits) for name in factors}
+    limits = {name: least_factor(name, parts[name].get("load_case", ""), run.limits) for name in factors}
     weakest = min(factors, key=lambda name: factors[name] / (limits[name] or 1.0))
     asked = f" (at least {limits[weakest]:g} is asked for)" if limits[weakest] is not None else ""
     asked += decided(parts[weakest])
@@ -176,26 +175,16 @@ def as_made(run: ReportData) -> str:
     return f"Made {found.samples} times within its tolerances, {feasible}."
 
 
-def reservations(run: ReportData) -> list[str]:
-    """What must be settled before the recommended design is built."""
-    if run.recommended is None:
-        return []
-    found = [f"{o.text[:1].upper()}{o.text[1:]}." for o in run.objections(run.recommended)]
+def unsettled_search(run: ReportData) -> str:
+    """Why better designs than the recommended one are likely; "" if the search has settled."""
     grown, late = run.late_growth
-    if grown >= SETTLED and len(run.entries) < combinations(run):
-        designs, front = plural(len(run.entries), "design"), plural(len(run.front), "best compromise")
-        found.append(
-            f"The search has not settled: the last quarter of its {designs} found {late} of the {front} and "
-            f"{100 * grown:.0f}\u202f% of the front's volume. Better designs are likely: search on."
-        )
-    return found
-
-
-def remedy(run: ReportData) -> str:
-    """What to do about an objection to the recommended design that a closer analysis may lift."""
-    if run.recommended is None or not any(o.kind in UNSETTLED for o in run.objections(run.recommended)):
+    if grown < SETTLED or len(run.entries) >= combinations(run):
         return ""
-    return CLOSER
+    designs, front = plural(len(run.entries), "design"), plural(len(run.front), "best compromise")
+    return (
+        f"The search has not settled: the last quarter of its {designs} found {late} of the {front} and "
+        f"{100 * grown:.0f}\u202f% of the front's volume. Better designs are likely."
+    )
 
 
 def nothing_to_build(run: ReportData) -> str:

@@ -45,7 +45,7 @@ class RobotScene:
     """Everything to draw a robot.
 
     jets: frames that thrusts act on, along the unit vectors `pushes` (jets, 3) of these frames. max_thrust: of the
-    strongest [N].
+    strongest [N]. propellers: thrusts come from propellers, which have no flame.
     """
 
     robot: RobotDescription
@@ -54,6 +54,7 @@ class RobotScene:
     joints: tuple[str, ...] = field(default=())
     pushes: Array = field(default_factory=lambda: np.empty((0, 3)))
     max_thrust: float = 1.0
+    propellers: bool = False
 
     @cached_property
     def links(self) -> tuple[str, ...]:
@@ -117,7 +118,8 @@ def robot_scene(
     joints = tuple(joint for group in config.flight.joint_groups for joint in group.joints)
     jets = config.flight.jets
     pushes = np.array(jets.axes or [DOWN] * len(jets.frames), dtype=float).reshape(-1, 3)
-    return RobotScene(robot, tuple(pieces), tuple(jets.frames), joints, pushes, float(np.max(jets.max_thrust_n)))
+    strongest, propellers = float(np.max(jets.max_thrust_n)), jets.kind == "propeller"
+    return RobotScene(robot, tuple(pieces), tuple(jets.frames), joints, pushes, strongest, propellers)
 
 
 def round_number(value: float) -> float:

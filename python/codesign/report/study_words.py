@@ -8,7 +8,7 @@ from dataclasses import replace
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import PartWords
 from codesign.report.words import listed, plural
-from codesign.study.config import FemConfig, LoadCaseConfig, PartConfig, StudyConfig
+from codesign.study.config import FemConfig, LoadCaseConfig, MassOnFaceConfig, PartConfig, StudyConfig
 from codesign.study.flight_config import JointGroupConfig
 from codesign.study.load_config import LOAD_KINDS, LoadConfig
 from codesign.study.sections import Vector3
@@ -41,27 +41,49 @@ def _times(group: JointGroupConfig) -> str:
 def part_words(config: StudyConfig) -> dict[str, PartWords]:
     """Load case and material of every part, with a warning where its density is not that of its material."""
     return {
-        part.name: PartWords(_load_case(config, part), _material(config, part), _warning(config, part))
+        part.name: PartWords(
+            _load_case(config, part),
+            _material(config, part),
+            _warning(config, part),
+            {case.name: _loads(case) for case in part.load_cases},
+            _held(config, part),
+            listed([mass_words(mass) for mass in part.masses]),
+        )
         for part in config.parts
     }
 
 
 def _load_case(config: StudyConfig, part: PartConfig) -> str:
     loads = "; ".join(_case(case, len(part.load_cases) > 1) for case in part.load_cases)
+    carried = f", with {listed([mass_words(mass) for mass in part.masses])}" if part.masses else ""
+    return f"{loads}, {_held(config, part)}{carried}"
+
+
+def _held(config: StudyConfig, part: PartConfig) -> str:
+    """Which faces are held, and the part's own variants of load and support where they are not the usual ones."""
     held = (
         f"{'face' if len(part.supports) == 1 else 'faces'} {listed(part.supports)} held"
         if part.supports
         else "not held"
     )
     models = [("load", config.fem.load, FemConfig().load), ("support", config.fem.support, FemConfig().support)]
-    chosen = listed([f"{kind} model “{name}”" for kind, name, usual in models if name != usual])
-    return f"{loads}, {held}" + (f" ({chosen})" if chosen else "")
+    chosen = listed([f"the part's own {kind} “{name}”" for kind, name, usual in models if name != usual])
+    return held + (f" ({chosen})" if chosen else "")
 
 
 def _case(case: LoadCaseConfig, named: bool) -> str:
-    loads = listed([load_words(load) for load in case.loads] or [_flown(case)])
     asked = f", at least {case.safety_factor_min:g} times" if case.safety_factor_min is not None else ""
-    return f"{case.name}: {loads}{asked}" if named else loads
+    return f"{case.name}: {_loads(case)}{asked}" if named else _loads(case)
+
+
+def _loads(case: LoadCaseConfig) -> str:
+    return listed([load_words(load) for load in case.loads] or [_flown(case)])
+
+
+def mass_words(mass: MassOnFaceConfig) -> str:
+    """A rigid body that a face carries: `0.14 kg on face seat at (0, 0, 18) mm of motor`."""
+    of = f" of {mass.interface}" if mass.interface else ""
+    return f"{mass.mass_kg:g}\u202fkg on face {mass.face} at {_vector(mass.point_mm)}\u202fmm{of}"
 
 
 def _flown(case: LoadCaseConfig) -> str:
@@ -116,7 +138,7 @@ def flight_words(config: StudyConfig) -> str:
     draws = len(flight.seeds)
     what = f"Means of {draws} {calm} flights" if draws > 1 else f"One {calm} flight"
     return (
-        f"{what} of {seconds:g}\u202fs with {plural(len(flight.jets.frames), 'jet')}, simulated "
+        f"{what} of {seconds:g}\u202fs with {plural(len(flight.jets.frames), flight.jets.kind)}, simulated "
         f"in steps of {1e3 * flight.step_s:g}\u202fms. The step enters the numbers, so they compare designs with each "
         "other rather than predict the robot's."
     )

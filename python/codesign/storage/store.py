@@ -280,8 +280,9 @@ class RunStore:
         return [tuple(json.loads(grid)) for (grid,) in rows]
 
     def counts(self) -> dict[str, int]:
-        """Number of rows by status."""
-        return dict(self._execute("SELECT status, count(*) FROM evaluations GROUP BY status ORDER BY status"))
+        """Number of the search's designs by status; further flights of designs, say, are not counted."""
+        asked = "SELECT status, count(*) FROM evaluations WHERE number IS NOT NULL GROUP BY status ORDER BY status"
+        return dict(self._execute(asked))
 
     def add_generation(self, generation: Generation) -> None:
         """Stores the state after a generation; the same one again changes nothing."""

@@ -63,6 +63,12 @@ class JetsConfig(Section, frozen=True, kw_only=True):
     lag_s: Positive | list[Positive] = 0.05
     symmetric_pairs: list[tuple[str, str]] = []
 
+    @property
+    def kind(self) -> str:
+        """What they are called: propellers have a drag torque, jets none."""
+        reactions = self.reaction_n_m_per_n
+        return "propeller" if any(reactions if isinstance(reactions, list) else [reactions]) else "jet"
+
 
 class CommandSpeedsConfig(Section, frozen=True, kw_only=True):
     """Rates of the reference for a full-scale command."""

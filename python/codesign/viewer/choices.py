@@ -13,17 +13,22 @@ from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.details import FOLDER, Detail, load_details
 from codesign.report.reading import read_report_data, same_study, study_of
+from codesign.report.verdict import Verdict, run_verdict
 
 ORIGINAL = "original"
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A design that can be picked: how it is called, its evaluation (None: not evaluated yet), its values."""
+    """A design that can be picked: how it is called, its values, its evaluation (None: not evaluated yet).
+
+    verdict: of the run that it is of, on building it.
+    """
 
     name: str
     design: dict[str, DesignValue]
     evaluation: Evaluation | None = None
+    verdict: Verdict | None = None
 
 
 def find_choices(
@@ -38,11 +43,11 @@ def find_choices(
         study = study if study is not None else study_of(directory)
         run = read_report_data(directory, study)
         details = load_details(directory)
-        choices += [Choice(role, dict(e.design), e) for role, e in run.highlights.items()]
+        choices += [Choice(role, dict(e.design), e, _verdict(run, e)) for role, e in run.highlights.items()]
         known = [choice.design for choice in choices]
         front = [run.entries[i] for i in run.front]
         choices += [
-            Choice(f"design {e.id}", dict(e.evaluation.design), e.evaluation)
+            Choice(f"design {e.id}", dict(e.evaluation.design), e.evaluation, _verdict(run, e.evaluation))
             for e in front
             if e.evaluation.design not in known
         ]
@@ -56,6 +61,11 @@ def find_choices(
     if not choices:
         raise CodesignError("nothing to show: give a design, or a run that has designs")
     return choices, study, details, run
+
+
+def _verdict(run: ReportData, evaluation: Evaluation) -> Verdict | None:
+    position = run.find(evaluation)
+    return None if position is None else run_verdict(run, position)
 
 
 def details_folder(run_directory: str | Path | None, study: Any) -> Path | None:

@@ -10,18 +10,20 @@ from codesign.problem.quantities import words
 from codesign.report.details import Detail
 from codesign.report.figures.flights import sample_at
 from codesign.report.figures.style import STRESS, STRESS_STOPS
-from codesign.report.objections import objections
 from codesign.report.study_words import objective_quantities
+from codesign.report.verdict import Verdict, study_verdict
 from codesign.report.words import number, percent
 from codesign.units import DEGREE, MEGA, MILLIMETER
 
 CLOSEST = 3  # pairs of bodies that are named
 
 
-def facts(study: Any, evaluation: Evaluation, original: Evaluation | None) -> str:
-    """What is known of a design, as Markdown; changes are from the original."""
+def facts(study: Any, evaluation: Evaluation, original: Evaluation | None, verdict: Verdict | None = None) -> str:
+    """What is known of a design, as Markdown; changes are from the original. verdict: of its run; None: it has none."""
     lines = [f"**{evaluation.status}**" + (f": {evaluation.reason}" if evaluation.reason else "")]
-    lines += [f"**Not to be built: {o.text}**" for o in objections(evaluation, {}) if o.final and not evaluation.reason]
+    if evaluation.status == "feasible":
+        said = verdict or study_verdict(study, evaluation)
+        lines += [f"**{said.title}**", *(f"**{said.head}**: {reason}" for reason in said.reasons)]
     for variable in study.space.variables:
         unit = {"deg": "°", "": ""}.get(variable.unit, f" {variable.unit}")
         label = words(study.config.variables[variable.name].label or variable.name)

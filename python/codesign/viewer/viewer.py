@@ -369,5 +369,7 @@ class Viewer:
     def _facts(self) -> str:
         """What is known of the design shown, as Markdown, with a note on meshes that are missing."""
         original = next((c.evaluation for c in self._choices if c.name == ORIGINAL), None)
-        said = facts(self._study, self._shown.evaluation, original)
+        shown = self._shown.evaluation
+        verdict = next((choice.verdict for choice in self._choices if choice.design == shown.design), None)
+        said = facts(self._study, shown, original, verdict)
         return f"{said}\n\n*{self._absent}*" if self._absent else said

@@ -97,7 +97,10 @@ def test_numbers_of_one_part_have_its_name_and_the_unit_of_all():
     assert quantity("-parts.left_arm.first_frequency").title == "−Left arm: first natural frequency (Hz)"
     assert quantity("parts.arm.max_displacement").factor == 1000.0
     assert quantity("parts.arm.work").title == "Parts: arm: work"
-    assert quantity("sum(parts.*.mass)").unit == ""
+    assert quantity("sum(parts.*.mass)").title == "Mass of the parts (kg)"
+    assert quantity("flight.tracking").title == quantity("tracking").title == "Tracking error (m)"
+    assert quantity("power:power_in_watts").title == "Power (W)"
+    assert quantity("power:power_in_parsecs").title == "Power in parsecs"
 
 
 def test_own_functions_of_an_evaluation(tmp_path):

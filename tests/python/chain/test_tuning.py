@@ -72,7 +72,7 @@ def test_gains_of_a_heavy_robot_on_a_light_one_are_named(tmp_path):
     flown = fly_robot(study, study.build_robot(study.baseline))
     assert flown["flight"]["saturation"]["thrust_rate_share"] > 0.5
     assert flown["status"] == "lost"
-    assert "of its limit: the gains are too high for the jets; `codesign tune`" in flown["reason"]
+    assert "of its limit: the gains are too high for the thrusters; `codesign tune`" in flown["reason"]
     trials = tune(study, study.baseline)
     assert not trials[0].completed
     assert recommended(trials).completed

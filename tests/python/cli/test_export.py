@@ -12,11 +12,12 @@ import pytest
 
 import synthetic_run
 from codesign.chain.study import load_study
-from codesign.cli.design import design_of_run, export_design, unplaced
-from codesign.cli.export_folder import MANIFEST, export_folder
-from codesign.cli.export_formats import CAD, DEFAULT, FORMATS, parse_formats, parse_frames, units_of
+from codesign.cli.export.design import ChosenDesign, design_of_run, export_design, unplaced
+from codesign.cli.export.folder import MANIFEST, export_folder
+from codesign.cli.export.formats import CAD, DEFAULT, FORMATS, parse_formats, parse_frames, units_of
 from codesign.errors import CodesignError, DesignError, ExportError, LibraryError
 from codesign.parts.step import SCHEMAS
+from codesign.report.verdict import Verdict
 from vtu_files import read_vtu
 
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
@@ -27,9 +28,9 @@ PARTS = {"jetpack_bracket": 2, "forearm_support": 1, "forearm_support_mirrored":
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("export") / "order"
-    written = export_design(
-        load_study("ironcub_paper"), DESIGN, folder, chosen="design 7 of a", organization="workshop", formats=KINDS
-    )
+    study = load_study("ironcub_paper")
+    chosen = ChosenDesign(study, DESIGN, "design 7 of a", lambda _: Verdict("candidate", "design 7", ("It is new.",)))
+    written = export_design(study, DESIGN, folder, run=chosen, organization="workshop", formats=KINDS)
     assert sorted(written) == sorted(path for path in folder.rglob("*") if path.is_file())
     assert not list(folder.parent.glob(".*"))
     return folder
@@ -40,6 +41,7 @@ def test_the_manifest_says_what_to_make(out: Path) -> None:
     assert {part["name"]: part["quantity"] for part in manifest["parts"]} == PARTS
     assert manifest["design"]["distance"] == {"value": 42, "unit": "mm"}
     assert manifest["chosen"] == "design 7 of a"
+    assert manifest["verdict"]["reasons"] == ["It is new."]
     assert manifest["units"]["cad/*.stl"] == "mm"
     assert manifest["files"] == sorted(str(path.relative_to(out)) for path in out.rglob("*") if path.is_file())
     bracket, forearm, mirrored = manifest["parts"]
@@ -75,6 +77,7 @@ def test_the_page_names_materials_loads_and_units(out: Path) -> None:
     ):
         assert words in page
     assert "belong to the author of the study" in page
+    assert "**Candidate: design 7. Not to be built yet:**\n\n- It is new." in page
 
 
 def test_step_files_carry_revision_and_organization(out: Path) -> None:
@@ -189,7 +192,7 @@ def test_known_numbers_are_not_computed_again_where_no_field_is_asked_for(
 ) -> None:
     study, design = load_study("gimbal_quad"), {"reach": 210, "height": 30}
     export_design(study, design, tmp_path / "first", formats=("stl", "urdf"))
-    monkeypatch.setattr("codesign.cli.design.evaluate_with_fields", None)
+    monkeypatch.setattr("codesign.cli.export.design.evaluate_with_fields", None)
     export_design(study, design, tmp_path / "second", formats=("stl", "urdf", "csv"))
     first, second = ((tmp_path / name / "evaluation.json").read_text() for name in ("first", "second"))
     assert first == second
@@ -258,11 +261,11 @@ def test_a_failed_export_leaves_the_earlier_one(tmp_path: Path) -> None:
 
 def test_a_design_of_a_run(tmp_path: Path) -> None:
     synthetic_run.write_run(tmp_path / "a", synthetic_run.evaluations(40), study=load_study("ironcub_paper"))
-    study, design, words = design_of_run(tmp_path / "a", "recommended")
-    assert study.name == "ironcub_paper"
-    assert words.endswith("of a (recommended)")
-    number = words.split()[1]
-    assert design_of_run(tmp_path / "a", number)[1] == design
+    chosen = design_of_run(tmp_path / "a", "recommended")
+    assert chosen.study.name == "ironcub_paper"
+    assert chosen.words.endswith("of a (recommended)")
+    number = chosen.words.split()[1]
+    assert design_of_run(tmp_path / "a", number).design == chosen.design
     for selector, message in (("9999", "no design 9999"), ("front", "one design is needed"), ("knee1", "names no")):
         with pytest.raises(DesignError, match=message):
             design_of_run(tmp_path / "a", selector)

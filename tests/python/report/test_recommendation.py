@@ -12,8 +12,9 @@ from codesign.report.evidence import evidence
 from codesign.report.objections import objections
 from codesign.report.page.summary import summary
 from codesign.report.reading import read_report_data
-from codesign.report.recommendation import left_out, price, reservations, second_opinion, strength, why
+from codesign.report.recommendation import left_out, price, second_opinion, strength, why
 from codesign.report.validation import Disturbance, Flight, Validation
+from codesign.report.verdict import run_verdict
 
 STUDY = synthetic_run.Study()
 LIMITS = {"safety_factor": (">=", 10.0)}
@@ -61,7 +62,10 @@ def test_an_objection_names_the_pair_that_is_nearest():
 @pytest.mark.parametrize(
     ("numbers", "said"),
     [
-        ({"tolerance_reached": False, "peak_stress": 1e6, "stress_error": 9.4e4}, "estimated at 9.4"),
+        (
+            {"safety_factor": 11.5, "tolerance_reached": False, "peak_stress": 1e6, "stress_error": 9.4e4},
+            "estimated at 9.4\u202f%, and the safety factor 11.5 less twice that, 9.68, misses its limit 10",
+        ),
         ({"safety_factor": 10.1, "peak_stress": 1e6, "stress_error": 4e4}, "by less than its error"),
     ],
 )
@@ -70,6 +74,31 @@ def test_stress_that_is_not_settled_is_an_objection_that_may_be_lifted(numbers, 
     assert found
     assert not any(objection.final for objection in found)
     assert said in found[0].text
+
+
+def test_an_error_that_no_limit_feels_is_no_objection():
+    """40 ± 8 % against 10 is sound whatever tolerance is asked for; without a limit the error itself is judged."""
+    loose = {"safety_factor": 40.0, "tolerance_reached": False, "peak_stress": 1e6, "stress_error": 8e4}
+    design = part(synthetic_run.evaluate(synthetic_run.BASELINE), **loose)
+    assert objections(design, LIMITS, tolerance=0.05) == ()
+    (found, _) = objections(design, {}, tolerance=0.05)
+    assert found.text.endswith("is not settled: its error is estimated at 8\u202f% (tolerance 5\u202f%)")
+    unresolved = part(design, peak_resolved=False, stress_error=6e5)
+    assert "too much to tell anything" in objections(unresolved, {"safety_factor": (">=", 1.5)}, tolerance=0.05)[0].text
+
+
+def test_every_load_case_is_judged_by_its_own_limit():
+    """The case that governs keeps its limit by far; another one is within its error of its own."""
+    cases = {
+        "thrust": {"safety_factor": 4.1, "peak_stress": 1e6, "stress_error": 5e4},
+        "landing": {"safety_factor": 3.0, "peak_stress": 2e6, "stress_error": 5e4},
+    }
+    design = part(synthetic_run.evaluate(synthetic_run.BASELINE), load_case="landing", cases=cases)
+    limits = {f"parts.{name}.cases.{case}.safety_factor": (">=", least) for name in design.parts for case, least in
+              (("thrust", 4.0), ("landing", 1.5))}  # fmt: skip
+    found = objections(design, limits)
+    assert len(found) == len(design.parts)
+    assert "in load case thrust keeps its limit 4 by less than its error, 5\u202f%" in found[0].text
 
 
 def test_infeasible_and_failed_designs_are_barred(evaluations):
@@ -106,21 +135,30 @@ def test_nothing_is_recommended_where_every_design_collides(tmp_path, evaluation
 
 
 def test_a_design_that_is_not_settled_is_a_candidate(tmp_path, evaluations):
-    doubtful = [part(e, tolerance_reached=False) if e.parts else e for e in evaluations]
+    doubtful = [
+        part(e, safety_factor=10.5, peak_stress=1e6, stress_error=8e4, tolerance_reached=False) if e.parts else e
+        for e in evaluations
+    ]
     run = report_data(tmp_path / "run", doubtful)
     assert run.recommended is not None
     text = summary(run)
     assert "Candidate: design" in text
     assert "Not to be built yet" in text
-    assert "--confirm" in text
+    assert f"codesign confirm {run.directory}" in text
     assert "Build design" not in text
 
 
 def test_a_search_that_still_finds_better_designs_is_not_settled(tmp_path, evaluations):
     run = report_data(tmp_path / "run", evaluations)
     assert run.late_growth[0] > 0.01
-    (said,) = reservations(run)
+    assert run.recommended is not None
+    verdict = run_verdict(run, run.recommended)
+    (said,) = verdict.reasons
     assert "has not settled" in said
+    assert (verdict.kind, verdict.head) == ("candidate", "Not to be built yet")
+    assert verdict.remedies == (f"Search on: codesign resume {run.directory} --evaluations 300.",)
+    other = next(i for i in run.front if i != run.recommended)
+    assert f"recommends design {run.entries[run.recommended].id} instead" in run_verdict(run, other).notes[-1]
 
 
 def test_the_choice_is_explained_with_its_distances_and_its_price(tmp_path, evaluations):

@@ -249,4 +249,4 @@ def test_a_flight_without_counted_joints_has_no_chart_of_them():
         flight, groups=(), arrays=flight.arrays | {"joint_velocity_error": np.empty((len(flight["time"]), 0))}
     )
     charts = page_detail(replace(shown, flight=still))["flight"]["charts"]
-    assert [chart["label"] for chart in charts] == ["Position error", "Attitude error", "Jet thrusts"]
+    assert [chart["label"] for chart in charts] == ["Tracking error", "Attitude error", "Thrusts"]

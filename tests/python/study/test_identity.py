@@ -67,7 +67,7 @@ def test_a_library_left_out_is_not_even_loaded_by_an_evaluation():
 def test_commands_start_without_what_they_do_not_need():
     loading = "import sys; from codesign import load_study; load_study('ironcub_paper')"
     helping = "import sys; sys.argv[1:] = ['--help']; from codesign.cli.main import main"
-    ordering = "import sys, codesign.cli.design"  # of `codesign export`
+    ordering = "import sys, codesign.cli.export.design"  # of `codesign export`
     unneeded_by = {
         loading: NOT_LOADED | {"scipy", "urllib.request"},
         helping: NOT_LOADED | {"numpy"},

@@ -82,7 +82,7 @@ def test_histories_of_a_study_that_weights_no_joints(tmp_path):
     shown = history(flight, flight.trajectory, log)
     assert shown["joint_velocity_error"].shape == (len(shown["time"]), 0)
     assert [chart["label"] for chart in page_of_flight(shown)["charts"]] == [
-        "Position error", "Attitude error", "Jet thrusts",
+        "Tracking error", "Attitude error", "Thrusts",
     ]  # fmt: skip
     weighted = history(load_study("gimbal_quad").config.flight, flight.trajectory, log)
     assert weighted["joint_velocity_error"].shape == (len(shown["time"]), 1)

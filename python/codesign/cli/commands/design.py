@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.table import Table
 
-from codesign.cli.console import err, out, print_confirmations, print_evaluation, print_json, shown
-from codesign.cli.export_formats import DEFAULT, FORMATS, parse_formats, parse_frames
+from codesign.cli.console import err, out, print_confirmations, print_evaluation, print_json, print_verdict, shown
+from codesign.cli.export.formats import DEFAULT, FORMATS, parse_formats, parse_frames
 from codesign.cli.options import (
     DEFAULT_STUDY,
     EXAMPLE_DESIGN,
@@ -36,6 +37,7 @@ def evaluate(
 ) -> int:
     """One design through the whole chain: parts, stress, robot, flight, objectives; known ones from the cache."""
     from codesign.chain.study import load_study
+    from codesign.report.verdict import study_verdict
     from codesign.storage.cache import default_cache_path, open_cache
     from codesign.storage.designs import evaluate_once
 
@@ -50,6 +52,8 @@ def evaluate(
         print_json(evaluation.to_dict() | confirmed)
     else:
         print_evaluation(evaluation)
+        if evaluation.status == "feasible":
+            print_verdict(study_verdict(loaded, evaluation).document(), only_reasons=True)
         print_confirmations(confirmations)
     return 0 if evaluation.status == "feasible" else 1
 
@@ -115,7 +119,8 @@ def export(
     and MCAP.
     """
     from codesign.chain.study import load_study
-    from codesign.cli.design import design_of_run, export_design
+    from codesign.cli.export.design import design_of_run, export_design
+    from codesign.cli.export.folder import MANIFEST
     from codesign.robot.formats.simplified import Simplification
 
     if (run_dir is None) == (not set_):
@@ -123,14 +128,16 @@ def export(
     kinds = parse_formats(formats)
     robot_files = Simplification(parse_frames(frames), exact_axes)
     if run_dir is None:
-        loaded, design, chosen = load_study(study), parse_design(set_ or []), ""
+        chosen = None
+        loaded, design = load_study(study), parse_design(set_ or [])
     else:
-        loaded, design, chosen = design_of_run(run_dir, selector)
+        chosen = design_of_run(run_dir, selector)
+        loaded, design = chosen.study, chosen.design
     written = export_design(
         loaded,
         design,
         out_dir,
-        chosen=chosen,
+        run=chosen,
         organization=organization,
         force=force,
         formats=kinds,
@@ -141,6 +148,7 @@ def export(
     else:
         for path in written:
             out.print(str(path), soft_wrap=True, highlight=False)
+        print_verdict(json.loads((out_dir / MANIFEST).read_text(encoding="utf-8"))["verdict"])
     return 0
 
 

@@ -221,6 +221,39 @@ def validate(
     return 0
 
 
+@commands.command(epilog="Example: `codesign confirm runs/a`")
+def confirm(
+    run_dir: RunArgument,
+    designs: Annotated[
+        list[str] | None,
+        typer.Option(help="recommended, best, front, spread:N or a number; default: what the recommendation needs."),
+    ] = None,
+    workers: WorkersOption = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Analyzes parts again, in full on meshes refined at the peak: the report then judges them by that.
+
+    By default the recommended design, and the best compromises that only the error of their stress speaks against.
+    """
+    from codesign.cli.console import print_confirmed
+    from codesign.followup.confirmation import confirm_designs
+    from codesign.report.reading import read_report_data, study_of
+    from codesign.search.progress import ProgressBar
+
+    try:
+        with ProgressBar(run_dir.name) as bar:
+            found = confirm_designs(run_dir, designs or [], workers=workers, progress=bar)
+    except KeyboardInterrupt:
+        err.print("the same command goes on where it was stopped", soft_wrap=True)
+        return INTERRUPTED
+    if as_json:
+        print_json([{"design": each.number, "confirmed": each.found.to_dict()} for each in found])
+        return 0
+    print_confirmed(read_report_data(run_dir, study_of(run_dir)), found)
+    out.print(f"the report shows it: codesign report {run_dir}", soft_wrap=True)
+    return 0
+
+
 @commands.command(epilog="Example: `codesign tolerances runs/a --designs recommended --samples 100`")
 def tolerances(
     run_dir: RunArgument,

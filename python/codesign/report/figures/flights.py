@@ -33,7 +33,7 @@ def histories(data: FigureData) -> Any:
     other = flights["original"] if "recommended" in flights else None
     figure = Figure(figsize=(style.PAGE, 7.0))
     rows = figure.subplots(5, 1, sharex=True)
-    _error(rows[0], main, other, "com_error", 100.0, "position\nerror (cm)")
+    _error(rows[0], main, other, "com_error", 100.0, "tracking\nerror (cm)")
     _error(rows[1], main, other, "attitude_error", 1.0 / DEGREE, "attitude\nerror (°)")
     for i, name in enumerate(short_names(main.jets)):
         dash = "-" if i < len(style.SERIES) else ":"

@@ -25,7 +25,8 @@ PART_VIEW = (-55.0, 28.0)  # azimuth, elevation [deg]
 ROBOT_VIEW = (148.0, 22.0)  # relative to where the robot looks
 SNAPSHOTS = 7
 SETTLED = 0.8  # of the time before the first command: the robot hovers, its joints have settled
-FLAME = np.array([0.96, 0.55, 0.16])
+FLAME, HOT = np.array([0.96, 0.55, 0.16]), np.array([1.0, 0.93, 0.75])
+THRUST = np.array([0.25, 0.45, 0.75])  # of propellers
 FLAME_LENGTH = 0.3  # of the robot's size, at the largest thrust
 FLAME_RADIUS = 0.025  # of the robot's size
 
@@ -148,7 +149,10 @@ def facing(base: Matrix) -> tuple[float, float]:
 def robot_bodies(
     scene: RobotScene, joints: Array | None, base: Matrix | None, thrusts: Array | None = None
 ) -> list[Body]:
-    """The robot in one posture; the design's parts stand out; flames where there are thrusts (jets,) [N]."""
+    """The robot in one posture; the design's parts stand out.
+
+    thrusts: (jets,) [N]; flames of jets, cones along the thrust of propellers.
+    """
     poses = scene.poses(joints, base)
     bodies = []
     for piece in scene.pieces:
@@ -156,25 +160,30 @@ def robot_bodies(
         color = style.PART if piece.part is not None else tuple(0.45 + 0.55 * c for c in piece.color)
         bodies.append(Body(piece.points @ pose[:3, :3].T + pose[:3, 3], piece.triangles, np.array(color)))
     for jet, push, thrust in zip(scene.jets, scene.pushes, [] if thrusts is None else thrusts, strict=False):
-        bodies.append(_flame(poses[jet], -push, float(thrust) / scene.max_thrust, scene.size))
+        share = float(thrust) / scene.max_thrust
+        bodies.append(
+            _cone(poses[jet], push, share, scene.size, THRUST, THRUST)
+            if scene.propellers
+            else _cone(poses[jet], -push, share, scene.size, FLAME, HOT)
+        )
     return bodies
 
 
-def _flame(pose: Matrix, exhaust: Array, share: float, size: float) -> Body:
-    """A cone along a unit vector of the jet's frame, as long as its share of the largest thrust."""
+def _cone(pose: Matrix, along: Array, share: float, size: float, root: Array, tip: Array) -> Body:
+    """A cone along a unit vector of a frame, as long as its share of the largest thrust; colors at its root and tip."""
     from trimesh import creation
     from trimesh.geometry import align_vectors
 
     length = size * max(FLAME_LENGTH * share, 1e-3)
     cone = creation.cone(radius=FLAME_RADIUS * size, height=length, sections=20)
     align: Any = align_vectors
-    turn = pose[:3, :3] @ align([0.0, 0.0, 1.0], exhaust)[:3, :3]
+    turn = pose[:3, :3] @ align([0.0, 0.0, 1.0], along)[:3, :3]
     points = np.asarray(cone.vertices) @ turn.T + pose[:3, 3]
     fade = np.clip(np.asarray(cone.vertices)[:, 2:] / length, 0.0, 1.0)
     return Body(
         points,
         np.asarray(cone.faces, dtype=np.int64),
-        FLAME * (1 - fade) + np.array([1.0, 0.93, 0.75]) * fade,
+        root * (1 - fade) + tip * fade,
         lit=False,
     )
 

@@ -32,7 +32,8 @@ function card(i) {
     (d.files ? `<div class="group"><h3>Files</h3>${d.files.map(f => `<div class="row"><a href="${escaped(f.href)}">${escaped(f.label)}</a><small>${escaped(f.size)}</small></div>`).join('')}</div>` : '') +
     `<div class="group"><button type="button" class="copy" data-copy="${escaped(command(d))}">Copy export command</button></div>`;
 }
-const command = d => report.command + ' ' + report.variables.map((v, k) => `--set ${v.key}=${d.x[k]}`).join(' ') + ` --out design-${d.id ?? 'original'}`;
+const command = d => d.id !== null ? `${report.command} --design ${d.id} --out design-${d.id}`
+  : report.command_original + ' ' + report.variables.map((v, k) => `--set ${v.key}=${d.x[k]}`).join(' ') + ' --out design-original';
 
 /** What speaks against building a design. */
 function against(d) {

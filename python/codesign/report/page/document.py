@@ -11,17 +11,17 @@ from codesign.problem.evaluation import Evaluation
 from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import ReportData
 from codesign.report.details import detail_key
-from codesign.report.objections import Objection, objections
+from codesign.report.objections import Objection
 from codesign.units import DEGREE
 
 STATUS = {"feasible": 0, "infeasible": 1, "failed": 2, "skipped": 3}
 FLOORS = {"body_clearance": 0.0, "plume_clearance": 0.0}  # below it a number is bad, whether limited or not
 PART_KEYS = ("mass", "safety_factor", "peak_stress", "stress_error", "max_displacement")
 FLIGHT_FACTS = (
-    Quantity("max_com_error", "Largest position error", "cm", factor=100.0),
+    Quantity("max_com_error", "Largest tracking error", "cm", factor=100.0),
     Quantity("max_attitude_error", "Largest attitude error", "°", factor=1.0 / DEGREE),
-    Quantity("min_thrust", "Lowest jet thrust", "N"),
-    Quantity("max_thrust", "Highest jet thrust", "N"),
+    Quantity("min_thrust", "Lowest thrust", "N"),
+    Quantity("max_thrust", "Highest thrust", "N"),
     Quantity("duration", "Flown", "s"),
 )
 
@@ -47,7 +47,7 @@ def page_document(
         baseline = run.find(run.baseline)
         if baseline is None:
             baseline = len(rows)
-            against = _against(objections(run.baseline, run.limits))
+            against = _against(run.against(run.baseline))
             numbers = _row(run, run.baseline, constraints, parts, files or {})
             rows.append({"id": None, "front": False, **against, **numbers})
     return {
@@ -75,6 +75,7 @@ def page_document(
         ],
         "details": details or {},
         "command": run.export_command,
+        "command_original": run.export_original,
     }
 
 

@@ -56,9 +56,9 @@ def _flight(flight: FlightHistory) -> dict[str, Any]:
 
     groups = [group.replace("_", " ") for group in flight.groups]
     charts = [
-        chart("Position error", "cm", 100.0 * flight["com_error"], ["center of mass"]),
+        chart("Tracking error", "cm", 100.0 * flight["com_error"], ["center of mass"]),
         chart("Attitude error", "°", flight["attitude_error"] / DEGREE, ["base"]),
-        chart("Jet thrusts", "N", flight["thrust"], short_names(flight.jets), zero=False),
+        chart("Thrusts", "N", flight["thrust"], short_names(flight.jets), zero=False),
     ]
     if groups:  # without a weighted joint group there is no joint velocity to show
         charts.append(chart("Joint velocity error", "°/s", flight["joint_velocity_error"] / DEGREE, groups))

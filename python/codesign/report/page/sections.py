@@ -151,7 +151,7 @@ def _validation(run: ReportData, validation: Validation) -> Block:
     text = (
         "Chosen designs on trajectories that the search has not seen, each against the original on the same flight; in "
         f"disturbed flights with gusts of {size.gust:g} N and errors of {100 * size.mass:g} % in the mass of each body "
-        f"and {100 * size.thrust:g} % in the thrust of each jet (standard deviations, the same seeds for all designs)."
+        f"and {100 * size.thrust:g} % in each thrust (standard deviations, the same seeds for all designs)."
     )
     chart = '<div id="validation-chart" role="img" aria-label="Change of each objective, flight by flight"></div>'
     body = chart + validation_tables(run, validation)

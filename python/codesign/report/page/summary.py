@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import shlex
 from html import escape
 
 from codesign.problem.design_space import value_text
@@ -11,6 +12,7 @@ from codesign.report.comparison import shares_in_words
 from codesign.report.data import ReportData
 from codesign.report.evidence import Evidence, evidence, validated
 from codesign.report.validation import Validation
+from codesign.report.verdict import run_verdict
 
 
 def summary(run: ReportData, picture: bytes | None = None, validation: Validation | None = None) -> str:
@@ -61,7 +63,7 @@ def _trust(run: ReportData, validation: Validation | None) -> str:
     """What the changes are of, and how to learn whether they last."""
     if run.baseline_vector is None or validated(run, validation):
         return run.flight_words
-    command = f"codesign validate {run.directory}"
+    command = f"codesign validate {shlex.quote(str(run.directory))}"
     return f"{run.flight_words} Whether these changes last on other flights is not known: {command}."
 
 
@@ -77,22 +79,14 @@ def _build(run: ReportData) -> str:
         f"<div><dt>{escape(run.label(v))}</dt><dd>{value_text(design[v.name])}{_unit(v.unit)}</dd></div>"
         for v in run.variables
     )
-    command = " ".join(
-        [
-            run.export_command,
-            *(f"--set {v.name}={value_text(design[v.name])}" for v in run.variables),
-            f"--out design-{entry.id}",
-        ]
-    )
-    against = recommendation.reservations(run)
-    better = recommendation.passed_over(run)
-    title = f"Candidate: design {entry.id}" if against or better else f"Build design {entry.id}"
-    open_points = "".join(f"<li>{escape(text)}</li>" for text in against)
-    points = f'<p class="bad">Not to be built yet:</p><ul class="bad">{open_points}</ul>' if against else ""
-    if better:
-        points = f'<p class="bad">{escape(f"{better} {recommendation.CLOSER}")}</p>{points}'
+    command = f"{run.export_command} --design {entry.id} --out design-{entry.id}"
+    verdict = run_verdict(run, run.recommended)
+    points = ""
+    if verdict.reasons:
+        open_points = "".join(f"<li>{escape(text)}</li>" for text in verdict.reasons)
+        points = f'<p class="bad">{verdict.head}:</p><ul class="bad">{open_points}</ul>'
     said = [
-        recommendation.remedy(run),
+        " ".join(verdict.remedies),
         recommendation.why(run),
         f"{recommendation.price(run)} {recommendation.second_opinion(run)}",
         recommendation.strength(run),
@@ -101,7 +95,8 @@ def _build(run: ReportData) -> str:
     ]
     paragraphs = "".join(f"<p>{escape(text.strip())}</p>" for text in said if text.strip())
     return (
-        f'{box}<h2>{title}</h2>{points}<dl class="values">{values}</dl><div class="because">{paragraphs}</div>'
+        f'{box}<h2>{escape(verdict.title)}</h2>{points}<dl class="values">{values}</dl>'
+        f'<div class="because">{paragraphs}</div>'
         f'<div class="command"><code>{escape(command)}</code>'
         f'<button type="button" class="copy" data-copy="{escape(command)}">Copy</button></div></div>'
     )

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from codesign import _core, fem
 from codesign.chain.chain import build_parts, build_robot, evaluate_with_fields, fly_design, stress_settings
-from codesign.cli.export_folder import MANIFEST, export_folder, files_in
-from codesign.cli.export_formats import CAD, DEFAULT, LOG, ROBOT
-from codesign.cli.order import Order
-from codesign.cli.robot_files import AS_FLOWN, write_robot_files, write_urdf
+from codesign.cli.export.folder import MANIFEST, export_folder, files_in
+from codesign.cli.export.formats import CAD, DEFAULT, LOG, ROBOT
+from codesign.cli.export.order import Order
+from codesign.cli.export.page import OrderPage
+from codesign.cli.export.robot_files import AS_FLOWN, write_robot_files, write_urdf
 from codesign.errors import DesignError
 from codesign.fem.gmsh import write_msh
 from codesign.fem.vtu import StressModel, write_vtu
@@ -26,6 +28,7 @@ from codesign.parts.load_case import part_case
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignValue, value_text
 from codesign.report.study_words import part_words
+from codesign.report.verdict import Judge, Verdict, run_verdict, study_verdict
 from codesign.storage.cache import default_cache_path, open_cache
 from codesign.storage.designs import keep_evaluation, known_evaluation
 
@@ -41,7 +44,7 @@ def export_design(
     theta: Mapping[str, DesignValue],
     out: str | Path,
     *,
-    chosen: str = "",
+    run: ChosenDesign | None = None,
     organization: str = "",
     force: bool = False,
     formats: Sequence[str] = DEFAULT,
@@ -54,9 +57,9 @@ def export_design(
     assembly of all of them in their places on the robot. `robot/`: URDF with meshes; MJCF, SDF and the history of the
     flight if asked for. `stress/`: VTU of each part.
 
-    chosen: how the design was found, in words. organization: for the files' headers. force: replace another design's
-    export. formats: which of `export_formats.FORMATS` are written. robot_files: what is written differently from the
-    robot that was flown.
+    run: the design as one of a run, for where it comes from and the run's verdict on it; None: its values were given.
+    organization: for the files' headers. force: replace another design's export. formats: which of `formats.FORMATS`
+    are written. robot_files: what is written differently from the robot that was flown.
 
     Raises: DesignError; ExportError if the folder holds something else; CodesignError of the chain.
     """
@@ -64,9 +67,8 @@ def export_design(
     design = study.space.design(theta)
     parts = build_parts(study, design)
     placed = placed_components(study, design, parts)
-    order = Order(
-        study, design, [component for component, _ in placed] + unplaced(study, parts), chosen, organization, formats
-    )
+    components = [component for component, _ in placed] + unplaced(study, parts)
+    order = Order(study, design, components, run.words if run is not None else "", organization, formats)
     with export_folder(out, order.revision, force) as folder:
         with native_threads(1) as beside:  # the native chain releases the interpreter's lock
             chain = beside.submit(_computed, study, design, formats)
@@ -86,9 +88,11 @@ def export_design(
             _write_meshes(analyses, folder / "stress")
         write_text(folder / "evaluation.json", json.dumps(evaluation.to_dict(), indent=1))
         write_text(folder / "bom.csv", order.bill_of_materials())
-        write_text(folder / "README.md", order.page(evaluation, models, _written(folder)))
+        verdict = run.judge(evaluation) if run is not None else study_verdict(study, evaluation)
+        page = OrderPage(order, evaluation, verdict, models, run.confirmed if run is not None else {})
+        write_text(folder / "README.md", page.text(_written(folder)))
         files = [*_written(folder), MANIFEST]
-        write_text(folder / MANIFEST, order.manifest(evaluation, models, files))
+        write_text(folder / MANIFEST, page.manifest(files))
     return [out / file for file in sorted(files)]
 
 
@@ -112,11 +116,23 @@ def _computed(
         return evaluation, analyses, flight
 
 
-def design_of_run(run_directory: Path, selector: str) -> tuple[Study, dict[str, DesignValue], str]:
-    """The study of a run, a design of it (`recommended` or a number), and where that comes from in words.
+@dataclass(frozen=True, slots=True)
+class ChosenDesign:
+    """A design of a run.
 
-    Raises: StoreError, StudyError, DesignError.
+    words: where it comes from, "design 14 of runs/a". judge: the run's verdict on it. confirmed: its parts on finer
+    meshes, if the run has them.
     """
+
+    study: Study
+    design: dict[str, DesignValue]
+    words: str
+    judge: Judge
+    confirmed: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+
+def design_of_run(run_directory: Path, selector: str) -> ChosenDesign:
+    """A design of a run: `recommended` or a number. Raises: StoreError, StudyError, DesignError."""
     from codesign.followup.validation import select
     from codesign.report.reading import read_report_data, study_of
 
@@ -128,9 +144,15 @@ def design_of_run(run_directory: Path, selector: str) -> tuple[Study, dict[str, 
     if len(found) != 1:
         raise DesignError(f"--design {selector}: one design is needed, recommended or a number")
     ((role, design),) = found.items()
-    number = next(entry.id for entry in run.entries if entry.evaluation.design == design)
-    words = f"design {number} of {run_directory.name}" + ("" if role.startswith("design") else f" ({role})")
-    return study, design, words
+    position = next(i for i, entry in enumerate(run.entries) if entry.evaluation.design == design)
+    words = f"design {run.entries[position].id} of {run_directory.name}"
+    words += "" if role.startswith("design") else f" ({role})"
+    known = run.confirmed.get(tuple(design.values()))
+
+    def judge(evaluation: Evaluation) -> Verdict:
+        return run_verdict(run, position, evaluation)
+
+    return ChosenDesign(study, design, words, judge, known.parts if known is not None else {})
 
 
 def placed_components(study: Study, design: Design, parts: Mapping[str, Part]) -> list[tuple[Component, str]]:

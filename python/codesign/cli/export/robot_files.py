@@ -16,7 +16,7 @@ from codesign import dynamics as dyn
 from codesign.chain.chain import build_robot
 from codesign.chain.clearances import part_pieces
 from codesign.chain.flight import find_trajectory, flight_settings
-from codesign.cli.export_formats import LOG, ROBOT
+from codesign.cli.export.formats import LOG, ROBOT
 from codesign.files import write_text
 from codesign.geometry.mesh_files import obj_text
 from codesign.names import identifier

@@ -1,0 +1,1 @@
+"""An exported design: the folder, its files, and what they say about themselves."""
