@@ -150,8 +150,9 @@ void bind_result(py::module_& m) {
       .def_readonly("peak_position", &StaticResult::peak_position, "(3) m")
       .def_readonly("border_distance", &StaticResult::border_distance,
                     "m, of peak_position from the nearest border of a clamp or load")
-      .def_readonly("peak_at_exclusion", &StaticResult::peak_at_exclusion,
-                    "True if the peak lies right beside what the exclusion leaves out")
+      .def_readonly(
+          "peak_at_exclusion", &StaticResult::peak_at_exclusion,
+          "True if the peak lies right beside larger stresses that the exclusion leaves out")
       .def_readonly("stress_error", &StaticResult::stress_error,
                     "Pa, estimated error of peak_stress")
       .def_readonly("energy_error", &StaticResult::energy_error,

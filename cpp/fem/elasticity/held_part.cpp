@@ -57,7 +57,7 @@ void read_stress(const HeldPart& part, const std::vector<int>& loaded, const Eig
   r.peak_stress = peak.value;
   r.peak_position = peak.position;
   r.border_distance = zone.border_distance(peak.position);
-  r.peak_at_exclusion = beside_exclusion(part.mesh, peak, zone);
+  r.peak_at_exclusion = hidden.value > peak.value && beside_exclusion(part.mesh, peak, zone);
   r.safety_factor = peak.value > 0 ? part.material.yield_strength / peak.value
                                    : std::numeric_limits<double>::infinity();
 }

@@ -789,7 +789,7 @@ class StaticResult:
     @property
     def peak_at_exclusion(self) -> bool:
         """
-        True if the peak lies right beside what the exclusion leaves out
+        True if the peak lies right beside larger stresses that the exclusion leaves out
         """
     @property
     def peak_position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:

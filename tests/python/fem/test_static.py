@@ -110,10 +110,10 @@ def test_a_peak_at_a_point_force_is_not_resolved():
 
 def test_a_peak_right_beside_what_a_clamp_leaves_out_is_told() -> None:
     """A cantilever's stress is largest at its clamp: read beside the exclusion, unless nothing is left out."""
-    mesh, forces = bar((12, 3, 3)), [fem.Force(TIP, [0.0, 0.0, -100.0])]
+    mesh, forces = bar((20, 5, 5)), [fem.Force(TIP, [0.0, 0.0, -100.0])]
     beside = fem.solve_static(mesh, STEEL, [fem.Support(ROOT)], forces, exclusion_distance=5e-3)
     assert beside.peak_at_exclusion
-    assert 5e-3 < beside.border_distance < 5e-3 + 0.2 * np.hypot(8.4e-3, 6.7e-3)
+    assert 5e-3 < beside.border_distance < 6.5e-3
     whole = fem.solve_static(mesh, STEEL, [fem.Support(ROOT)], forces, exclusion_distance=0.0)
     assert not whole.peak_at_exclusion
-    assert whole.border_distance < 1e-6
+    assert whole.border_distance < beside.border_distance
