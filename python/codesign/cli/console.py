@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 UNLIMITED = 10_000  # columns of a terminal
 MOST_ROWS = 20  # of a front
+SPARE = ("seed", "algorithm", "seconds", "study", "outcome")  # columns of a list of runs that give way first
 # What is printed holds paths and texts of users: square brackets and colons in them are no markup.
 out = Console(markup=False, emoji=False)
 err = Console(markup=False, emoji=False, stderr=True)
@@ -190,11 +191,38 @@ def print_run(run: Run, as_json: bool) -> int:
     counts = "  ".join(f"{status} {count}" for status, count in summary["statuses"].items())
     told = f": {summary['designs']} designs ({counts}) in {summary['seconds']:.1f} s"
     out.print(Text.assemble((str(run.out), "bold"), told))
+    if run.missing:
+        planned = summary["designs"] + run.missing
+        why = f" ({run.outcome})" if run.outcome else ""
+        out.print(f"{run.missing} of {planned} evaluations are missing{why}: codesign resume {run.out}", soft_wrap=True)
     if front:
         _print_front(front)
         return 0
     _print_nothing_feasible(run.evaluations)
     return 1
+
+
+def print_runs(rows: Sequence[Mapping[str, Any]], last: Sequence[str]) -> None:
+    """A line for each run; columns without a value, and those that a narrow terminal has no room for, are left out."""
+    wanted = ["run", "study", "algorithm", "seed", "designs", "front", "hypervolume", "best", *last]
+    columns = [name for name in wanted if any(row.get(name) is not None for row in rows)]
+    table = _runs_table(rows, columns)
+    for name in SPARE:
+        if out.measure(table, options=out.options.update(width=UNLIMITED)).maximum <= out.width:
+            break
+        columns = [column for column in columns if column != name]
+        table = _runs_table(rows, columns)
+    out.print(table)
+
+
+def _runs_table(rows: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> Table:
+    table = Table()
+    for name in columns:
+        table.add_column(name, overflow="fold")
+    for row in rows:
+        values = ["" if (value := row.get(name)) is None else value for name in columns]
+        table.add_row(*(f"{v:.5g}" if isinstance(v, float) else str(v) for v in values))
+    return table
 
 
 def print_tables(tables: Sequence[PartTable], as_json: bool) -> int:

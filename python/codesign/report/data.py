@@ -55,6 +55,7 @@ class PartWords:
 class ReportData:
     """A run as the report, the figures and the viewer read it.
 
+    planned: evaluations of the budget, None once they are made. stopped: why the search ended before that, if it did.
     entries: finished designs in the order of evaluation. waiting: designs that were asked for and have no result yet.
     baseline: the design that everything is compared with, None if the study names none or it could not be evaluated.
     limits: constraint -> (sign, limit in SI units), sign ">=" or "<="; the others are only watched.
@@ -77,6 +78,7 @@ class ReportData:
     baseline: Evaluation | None = None
     waiting: int = 0
     planned: int | None = None
+    stopped: str | None = None
     limits: dict[str, tuple[str, float]] = field(default_factory=dict)
     provenance: dict[str, str] = field(default_factory=dict)
     labels: dict[str, str] = field(default_factory=dict)

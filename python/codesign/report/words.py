@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from collections.abc import Sequence
 
 import numpy as np
@@ -108,11 +109,17 @@ def gained(run: ReportData) -> str:
 def caveats(run: ReportData) -> list[str]:
     """What a reader must know before trusting the page."""
     notes = list(run.notes) + [known.warning for known in run.part_words.values() if known.warning]
-    if run.waiting or (run.planned and len(run.entries) < run.planned):
+    if run.stopped is not None:
+        notes.append(
+            f"This search ended before its budget: {len(run.entries):,} of {run.planned:,} designs were evaluated "
+            f"({run.stopped}). codesign resume {shlex.quote(str(run.directory))} makes the others."
+        )
+    elif run.waiting or (run.planned and len(run.entries) < run.planned):
         missing = f" of {run.planned:,} planned" if run.planned else ""
         notes.append(
             f"This run is not finished: {plural(len(run.entries), 'design')}{missing} evaluated so far. "
-            "Continue it with codesign resume; everything below holds for what is there."
+            f"Continue it with codesign resume {shlex.quote(str(run.directory))}; everything below holds for what is "
+            "there."
         )
     if run.entries and not run.counts["feasible"]:
         notes.append(

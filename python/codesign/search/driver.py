@@ -25,6 +25,7 @@ from codesign.search.provenance import session_provenance
 from codesign.search.rivals import Rivals
 from codesign.storage.designs import keep_evaluation, known_evaluation
 from codesign.storage.records import Generation, Record
+from codesign.storage.runs import COMPLETE
 from codesign.storage.store import RunStore
 
 WAIT = 0.5  # s between looks at the clock while nothing finishes
@@ -89,7 +90,7 @@ class SearchDriver:
                     self._advance()
             if self._generation:
                 self._end_generation()
-            outcome = self._ended or "budget used up"
+            outcome = self._ended or COMPLETE[0]
         except KeyboardInterrupt:
             outcome = "interrupted"
             raise
@@ -167,7 +168,7 @@ class SearchDriver:
             return False
         grids = self._next(asked, count)
         if not grids:
-            self._ended = "every design of the grid has been evaluated"
+            self._ended = COMPLETE[1]
             return False
         self._batches.append(_Batch(asked, grids))
         self._grids += grids

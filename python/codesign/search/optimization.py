@@ -192,13 +192,17 @@ def resume(
     *,
     study: Problem | None = None,
     evaluations: int | None = None,
+    wall_time: float | None = None,
     **resources: Unpack[Resources],
 ) -> Run:
     """Continues a run: repeats its search over the stored rows, then goes on as if it had never stopped.
 
+    A run whose wall time is used up goes on without a limit of it, unless another is given.
+
     Args:
         study: the study, if it cannot be loaded from where the run found it.
         evaluations: a larger budget than the run had.
+        wall_time: seconds from now after which no new design is asked for.
         resources: see Resources; the cache is the run's unless given.
 
     Raises: StoreError (no run, being written), StudyError (the study's results would be others than the stored ones);
@@ -210,7 +214,12 @@ def resume(
         check_search(store.meta.get("search"), settings.algorithm, store.path.parent)
         if evaluations is not None:
             settings = replace(settings, evaluations=evaluations)
-            store.set_meta("settings", settings.document())
+        spent = sum(session["seconds"] for session in store.sessions())
+        if wall_time is not None:
+            settings = replace(settings, wall_time=spent + wall_time)
+        elif settings.wall_time is not None and spent >= settings.wall_time:
+            settings = replace(settings, wall_time=None)
+        store.set_meta("settings", settings.document())
         _drive(study, settings, store, resources.get("cache", store.meta["cache"]), resources)
     return load_run(out)
 

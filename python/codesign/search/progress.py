@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self
+
+LEAST_BAR = 10  # columns of a bar that is worth showing
+SPARE = ("rate", "cached", "skipped", "infeasible", "reached", "failed", "feasible")  # what gives way to a narrow line
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +51,20 @@ class Progress:
 
 
 class ProgressBar:
-    """A live line on standard error: use in a `with` block and pass the object as `progress`."""
+    """A live line on standard error: use in a `with` block and pass the object as `progress`.
+
+    A narrow terminal has it without the bar, then without what matters least.
+    """
 
     def __init__(self, title: str = "optimize", interval: float = 0.2) -> None:
         from rich.console import Console
         from rich.progress import BarColumn, TextColumn
         from rich.progress import Progress as Display
 
-        text = TextColumn("{task.fields[state]}")
-        self._display = Display(
-            TextColumn(title, style="bold", markup=False), BarColumn(None), text, console=Console(stderr=True)
-        )
+        self._console, self._title = Console(stderr=True), title
+        text = TextColumn("{task.fields[state]}", markup=False)
+        self._wide = [TextColumn(title, style="bold", markup=False), BarColumn(None), text]
+        self._display = Display(*self._wide, console=self._console)
         self._task = self._display.add_task(title, total=None, state="starting workers")
         self._interval, self._shown = interval, 0.0
         self._last: Progress | None = None
@@ -80,29 +87,43 @@ class ProgressBar:
             self._show(progress)
 
     def _show(self, progress: Progress) -> None:
-        values: dict[str, Any] = {"total": progress.total, "completed": progress.done, "state": describe(progress)}
+        width = self._console.width
+        room = width - len(self._title) - LEAST_BAR - 3
+        bar = len(describe(progress)) <= room
+        self._display.columns = tuple(self._wide if bar else self._wide[-1:])
+        state = describe(progress, room if bar else width - 1)
+        values: dict[str, Any] = {"total": progress.total, "completed": progress.done, "state": state}
         self._display.update(self._task, **values)
 
 
-def describe(progress: Progress) -> str:
-    """One line: counts, rate, hypervolume (of a single objective the best value), time left."""
+def describe(progress: Progress, width: int | None = None) -> str:
+    """One line: counts, rate, hypervolume (of a single objective the best value), time left.
+
+    width: columns that there are; what matters least is left out then.
+    """
     hypervolume = "—" if progress.hypervolume is None else f"{progress.hypervolume:.4f}"
     reached = f"hypervolume {hypervolume}" if progress.best is None else f"best {progress.best or '—'}"
     left = progress.seconds_left
-    parts = [
-        f"{progress.done}/{progress.total}",
-        f"{progress.rate:.2f}/s" if progress.rate < 10 else f"{progress.rate:.0f}/s",
-        f"feasible {progress.feasible}",
-        f"infeasible {progress.infeasible}",
-        f"failed {progress.failed}",
-        reached,
-        f"left {duration(left)}" if left is not None else "left —",
-    ]
-    if progress.skipped:
-        parts.insert(4, f"skipped {progress.skipped}")
-    if progress.cached:
-        parts.insert(2, f"cached {progress.cached}")
-    return "  ".join(parts)
+    parts = {
+        "done": f"{progress.done}/{progress.total}",
+        "rate": f"{progress.rate:.2f}/s" if progress.rate < 10 else f"{progress.rate:.0f}/s",
+        "cached": f"cached {progress.cached}" if progress.cached else "",
+        "feasible": f"feasible {progress.feasible}",
+        "infeasible": f"infeasible {progress.infeasible}",
+        "skipped": f"skipped {progress.skipped}" if progress.skipped else "",
+        "failed": f"failed {progress.failed}",
+        "reached": reached,
+        "left": f"left {duration(left)}" if left is not None else "left —",
+    }
+    for name in SPARE:
+        if width is None or len(_line(parts)) <= width:
+            break
+        del parts[name]
+    return _line(parts)
+
+
+def _line(parts: Mapping[str, str]) -> str:
+    return "  ".join(part for part in parts.values() if part)
 
 
 def duration(seconds: float) -> str:

@@ -11,9 +11,12 @@ from codesign.errors import StoreError
 from codesign.problem.design_space import DesignSpace, Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import Hypervolume, non_dominated, objective_rows
+from codesign.problem.quantities import quantity
 from codesign.storage.database import DATABASE
 from codesign.storage.records import Generation, Record
 from codesign.storage.store import RunStore
+
+COMPLETE = ("budget used up", "every design of the grid has been evaluated")  # outcomes of which nothing is missing
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -65,8 +68,19 @@ class Run:
     @property
     def finished(self) -> bool:
         """Whether the search came to its end."""
-        outcome = self.sessions[-1]["outcome"] if self.sessions else None
-        return outcome not in (None, "interrupted", "stopped by an error")
+        return self.outcome not in (None, "interrupted", "stopped by an error")
+
+    @property
+    def outcome(self) -> str | None:
+        """How the last session ended; None while it runs, or if its process died."""
+        return self.sessions[-1]["outcome"] if self.sessions else None
+
+    @property
+    def missing(self) -> int:
+        """Evaluations of the budget that were not made, in a run that goes on or that was stopped before its end."""
+        if self.outcome in COMPLETE:
+            return 0
+        return max(0, int(self.settings.get("evaluations") or 0) - len(self.search_records))
 
     @property
     def seconds(self) -> float:
@@ -112,12 +126,22 @@ def summarize(run: Run) -> dict[str, Any]:
         "seed": run.settings["seed"],
         "started": run.sessions[0]["started"] if run.sessions else None,
         "seconds": run.seconds,
-        "outcome": run.sessions[-1]["outcome"] if run.sessions else None,
+        "outcome": run.outcome,
         "designs": len(run.search_records),
+        "missing": run.missing,
         "statuses": run.counts,
         "front": len(run.front),
-        "hypervolume": run.hypervolume,
+        "hypervolume": run.hypervolume if len(run.objectives) > 1 else None,
+        "best": _best(run),
     }
+
+
+def _best(run: Run) -> str | None:
+    """The lowest value of a single objective, with its unit; a hypervolume says nothing of it."""
+    if len(run.objectives) != 1 or not run.front:
+        return None
+    (key,) = run.objectives
+    return quantity(key).text(run.front[0].evaluation.objectives[key])
 
 
 def list_runs(folder: str | Path) -> list[dict[str, Any]]:
@@ -154,5 +178,6 @@ def compare_runs(runs: Sequence[Run]) -> list[dict[str, Any]]:
     rows = []
     for run, front, end in zip(runs, fronts, ends, strict=True):
         own = int(keep[end - len(front) : end].sum())
-        rows.append(summarize(run) | {"hypervolume": box.of(front), "non_dominated": own})
+        volume = {"hypervolume": box.of(front)} if len(run.objectives) > 1 else {}
+        rows.append(summarize(run) | volume | {"non_dominated": own})
     return rows

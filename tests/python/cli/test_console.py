@@ -7,6 +7,7 @@ from rich.console import Console
 
 from codesign.cli import console
 from codesign.problem.evaluation import Evaluation
+from codesign.report.verdict import Verdict
 from codesign.search.optimization import evaluate_designs
 from codesign.storage.records import Record
 from codesign.storage.runs import Run
@@ -75,3 +76,31 @@ def test_the_table_of_a_front_fits_the_terminal(run, monkeypatch, capsys):
         told = capsys.readouterr().out
         assert ("a_long_name_11" in told, "…" in told) == (named, False)
         assert [cell.strip() for cell in told.splitlines()[-2].strip("│").split("│")][-2:] == ["1.5", "3"]
+
+
+@pytest.mark.parametrize(("width", "shown"), [(200, ("seed", "outcome")), (60, ("run", "designs"))])
+def test_a_list_of_runs_leaves_out_what_is_empty_or_has_no_room(monkeypatch, capsys, width, shown):
+    """A single objective has no hypervolume, but a best value; heads are not broken in a narrow terminal."""
+    row = {
+        "run": "runs/hexa", "study": "hexa", "algorithm": "surrogate", "seed": 1, "designs": 28, "front": 1,
+        "hypervolume": None, "best": "0.08799 kg", "seconds": 577.92, "missing": 6,
+        "outcome": "wall time of 540 s used up",
+    }  # fmt: skip
+    monkeypatch.setattr(console, "out", Console(markup=False, width=width))
+    console.print_runs([row], ("seconds", "missing", "outcome"))
+    told = capsys.readouterr().out
+    assert "hypervolume" not in told
+    assert "0.08799 kg" in told
+    assert all(name in told for name in shown)
+    assert max(map(len, told.splitlines())) <= width
+
+
+@pytest.mark.parametrize("kind", ["build", "candidate", "barred"])
+def test_a_verdict_is_told_with_its_reasons_and_remedies(capsys, kind):
+    verdict = Verdict(kind, "design 3", () if kind == "build" else ("It is thin.",), ("Make it thick.",))
+    console.print_verdict(verdict.document())
+    told = capsys.readouterr().out
+    assert told.startswith(
+        {"build": "Build design 3: ", "candidate": "not to be built yet: It", "barred": "not to be built: It"}[kind]
+    )
+    assert ("Make it thick." in told) == (kind != "build")

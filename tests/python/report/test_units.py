@@ -12,6 +12,7 @@ from codesign.report.data import Entry, ReportData
 from codesign.report.page.document import page_document
 from codesign.report.page.summary import summary
 from codesign.report.recommendation import left_out, passed_over
+from codesign.report.words import caveats
 from codesign.search.progress import Progress, describe
 
 KEYS = ("mass", "max_displacement")
@@ -80,3 +81,19 @@ def test_a_search_with_one_objective_tells_its_best_value():
     state = Progress(3, 0, 0, 0, 9, 3, 1.0, hypervolume=1.0027, best=quantity("mass").text(0.08799))
     assert "best 0.08799 kg" in describe(state) and "hypervolume" not in describe(state)
     assert "hypervolume 1.0027" in describe(replace(state, best=None))
+
+
+@pytest.mark.parametrize("width", [80, 60, 40, 24])
+def test_a_narrow_line_of_progress_is_not_cut(width):
+    """What is done and the time left stay, what matters least goes first."""
+    state = Progress(31, 2, 1, 2, 200, 34, 120.0, cached=3, skipped=4, hypervolume=1.0027)
+    told = describe(state, width)
+    assert len(told) <= width
+    assert told.startswith("38/200") and "left " in told
+    assert ("/s" in told) == (len(describe(state)) <= width)
+
+
+def test_a_search_that_was_stopped_before_its_budget_says_so():
+    run = replace(designs((0.09,), (0.08,)), planned=34, stopped="wall time of 540 s used up")
+    (said, *_) = caveats(run)
+    assert "2 of 34 designs were evaluated (wall time of 540 s used up). codesign resume run makes the others" in said

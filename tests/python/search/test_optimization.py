@@ -9,7 +9,7 @@ import pytest
 from codesign.errors import ExecutionError, StudyError
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.pareto import non_dominated
-from codesign.search.optimization import evaluate_designs, optimize, sweep
+from codesign.search.optimization import evaluate_designs, optimize, resume, sweep
 from codesign.search.registry import BUILT_IN
 from codesign.search.sampling import RandomSearch, start_points, sub_grid
 from codesign.search.settings import Settings
@@ -163,6 +163,15 @@ def test_stops_after_wall_time(tmp_path) -> None:
     run = optimize(study(seconds=0.05), out=tmp_path / "run", cache=None, generations=999, wall_time=1.0)
     assert 8 <= len(run.evaluations) < 400
     assert run.finished
+
+
+def test_what_the_wall_time_left_out_is_told_and_made_up_for(tmp_path) -> None:
+    run = optimize(study(seconds=0.05), out=tmp_path / "run", cache=None, evaluations=24, wall_time=0.01)
+    assert run.missing == 24 - len(run.evaluations) > 0
+    assert run.finished
+    again = resume(tmp_path / "run")
+    assert (again.missing, len(again.evaluations), again.outcome) == (0, 24, "budget used up")
+    assert again.evaluations[: len(run.evaluations)] == run.evaluations
 
 
 def test_evaluates_listed_designs(tmp_path) -> None:

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Table
 
-from codesign.cli.console import err, out, print_json, print_run
+from codesign.cli.console import err, out, print_json, print_run, print_runs
 from codesign.cli.options import (
     DEFAULT_STUDY,
     INTERRUPTED,
@@ -110,6 +109,9 @@ def resume(
     workers: WorkersOption = None,
     cluster: ClusterOption = None,
     evaluations: Annotated[int | None, typer.Option(min=1, help="A larger budget than the run had.")] = None,
+    wall_time: Annotated[
+        float | None, typer.Option(help="Seconds from now after which no new design is tried.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> int:
     """Continues an interrupted run, as if it had never stopped."""
@@ -118,7 +120,9 @@ def resume(
 
     try:
         with ProgressBar(run_dir.name) as bar:
-            run = run_resume(run_dir, workers=workers, cluster=cluster, evaluations=evaluations, progress=bar)
+            run = run_resume(
+                run_dir, workers=workers, cluster=cluster, evaluations=evaluations, wall_time=wall_time, progress=bar
+            )
     except KeyboardInterrupt:
         err.print(f"continue with: codesign resume {run_dir}")
         return INTERRUPTED
@@ -170,15 +174,7 @@ def runs_command(
     if as_json:
         print_json(rows)
         return 0
-    last = ("non_dominated",) if compare else ("seconds", "outcome")
-    columns = ("run", "study", "algorithm", "seed", "designs", "front", "hypervolume", *last)
-    table = Table()
-    for name in columns:
-        table.add_column(name, overflow="fold")
-    for row in rows:
-        values = ["" if (value := row.get(name)) is None else value for name in columns]
-        table.add_row(*(f"{v:.5g}" if isinstance(v, float) else str(v) for v in values))
-    out.print(table)
+    print_runs(rows, ("non_dominated",) if compare else ("seconds", "missing", "outcome"))
     for row in rows:
         if "error" in row:
             err.print(f"{row['run']}: {row['error']}", soft_wrap=True)
