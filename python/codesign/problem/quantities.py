@@ -183,10 +183,11 @@ BY_PATH = {quantity.path: quantity for quantity in _TABLE if quantity.path}
 # Units of own functions by the last words of their name: `power_in_watts` is shown as "Power (W)".
 UNIT_WORDS = {
     "amperes": "A", "cubic_meters": "m³", "degrees": "°", "dollars": "$", "euros": "€", "grams": "g", "hertz": "Hz",
-    "hours": "h", "joules": "J", "kelvins": "K", "kilograms": "kg", "kilowatts": "kW", "liters": "l",
-    "megapascals": "MPa", "meters": "m", "meters_per_second": "m/s", "millimeters": "mm", "minutes": "min",
-    "newton_meters": "N·m", "newtons": "N", "pascals": "Pa", "percent": "%", "radians": "rad", "seconds": "s",
-    "square_meters": "m²", "volts": "V", "watt_hours": "Wh", "watts": "W",
+    "hours": "h", "hz": "Hz", "joules": "J", "kelvins": "K", "kg": "kg", "kilograms": "kg", "kilowatts": "kW",
+    "liters": "l", "megapascals": "MPa", "meters": "m", "meters_per_second": "m/s", "millimeters": "mm",
+    "minutes": "min", "mm": "mm", "mpa": "MPa", "newton_meters": "N·m", "newtons": "N", "pascals": "Pa",
+    "percent": "%", "radians": "rad", "rpm": "1/min", "seconds": "s", "square_meters": "m²", "volts": "V",
+    "watt_hours": "Wh", "watts": "W",
 }  # fmt: skip
 OF_A_PART = {
     "mass": "mass",

@@ -12,6 +12,7 @@ import numpy as np
 from codesign.problem.quantities import words
 from codesign.report.data import ReportData
 from codesign.report.objections import least_factor, singular
+from codesign.report.strength import strength_words
 from codesign.report.words import EQUAL, combinations, listed, percent, plural
 from codesign.units import MILLIMETER
 
@@ -125,7 +126,7 @@ def strength(run: ReportData) -> str:
     """How strong the recommended design's weakest part is: under which load, how held, of what material."""
     if run.recommended is None:
         return ""
-    parts = run.entries[run.recommended].evaluation.parts
+    parts = run.as_confirmed(run.entries[run.recommended].evaluation).parts
     factors = {name: factor for name, part in parts.items() if (factor := part.get("safety_factor"))}
     if not factors or not math.isfinite(min(factors.values())):
         return ""
@@ -137,6 +138,20 @@ def strength(run: ReportData) -> str:
     case = f": {known.load}; {known.material}. Other loads and supports were not analyzed" if known else ""
     name = weakest.replace("_", " ")
     return f"Its weakest part, the {name}, yields at {factors[weakest]:.1f} times its load{asked}{case}."
+
+
+def load_cases(run: ReportData) -> str:
+    """The recommended design's parts by load case, each with its limit and its error; frequencies, places."""
+    if run.recommended is None:
+        return ""
+    parts = run.as_confirmed(run.entries[run.recommended].evaluation).parts
+    told = [text for name in parts if (known := run.part_words.get(name)) is not None
+            for text in strength_words(name, parts[name], run.limits, known.carried)]  # fmt: skip
+    if not told:
+        return ""
+    asked = run.stress_tolerance
+    errors = f" Errors are estimates; {100 * asked:g}\u202f% is asked for ([fem] tolerance)." if asked else ""
+    return f"{'. '.join(told)}.{errors}"
 
 
 def decided(part: Mapping[str, Any]) -> str:

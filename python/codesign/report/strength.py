@@ -71,6 +71,22 @@ def case_strengths(name: str, part: Mapping[str, Any], limits: Limits) -> list[C
     ]
 
 
+def strength_words(name: str, part: Mapping[str, Any], limits: Limits, carried: str) -> list[str]:
+    """Every load case of a part, the deciding one first, its frequency, and what to know of the deciding place."""
+    on = " on a finer mesh" if part.get("confirmed") else ""
+    cases = sorted(case_strengths(name, part, limits), key=lambda case: not case.decides)
+    several = len(cases) > 1
+    told = [
+        f"load case {words(case.name).lower()}{', which decides' if case.decides else ''}: {case.text}"
+        if several
+        else case.text
+        for case in cases
+    ]
+    found = [f"{words(name)}{on}: {'; '.join(told)}"] if told else []
+    place = next((case.place for case in cases if case.decides and case.place), "")
+    return [*found, *filter(None, (frequency_words(name, part, limits, carried), place[:1].upper() + place[1:]))]
+
+
 def place_words(numbers: Mapping[str, Any]) -> str:
     """What to know of a peak stress beside a clamp, where a linear elastic model has no finite stress; "" elsewhere.
 

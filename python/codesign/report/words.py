@@ -110,9 +110,10 @@ def caveats(run: ReportData) -> list[str]:
     """What a reader must know before trusting the page."""
     notes = list(run.notes) + [known.warning for known in run.part_words.values() if known.warning]
     if run.stopped is not None:
+        command = f" codesign resume {shlex.quote(str(run.directory))} makes the others." if not run.notes else ""
         notes.append(
             f"This search ended before its budget: {len(run.entries):,} of {run.planned:,} designs were evaluated "
-            f"({run.stopped}). codesign resume {shlex.quote(str(run.directory))} makes the others."
+            f"({run.stopped}).{command}"
         )
     elif run.waiting or (run.planned and len(run.entries) < run.planned):
         missing = f" of {run.planned:,} planned" if run.planned else ""

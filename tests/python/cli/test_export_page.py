@@ -1,14 +1,16 @@
 """What an export says: the report's verdict, every load case with its limit and error, what a frequency counts."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
 import synthetic_run
-from codesign.chain.study import load_study
+from codesign.chain.study import Study, load_study
 from codesign.cli.export.design import design_of_run
 from codesign.cli.export.order import Order
 from codesign.cli.export.page import OrderPage
@@ -17,8 +19,10 @@ from codesign.problem.evaluation import Evaluation
 from codesign.report.page.summary import summary
 from codesign.report.reading import read_report_data
 from codesign.report.verdict import Verdict, study_verdict
+from codesign.study.config import LoadCaseConfig, MassOnFaceConfig
+from codesign.study.load_config import LoadConfig
 
-DESIGN = {"length": 260, "tilt": 25, "tube": "16x2"}
+DESIGN = {"reach": 200, "height": 30}
 
 
 def stress(factor: float, peak: float, error: float, **more: Any) -> dict[str, Any]:
@@ -34,24 +38,42 @@ CASES = {"thrust": stress(19.7, 14e6, 0.54e6), "landing": stress(3.94, 70e6, 2.7
 ARM = {"mass": 0.0788, **CASES["landing"], "load_case": "landing", "cases": CASES, "first_frequency": 62.34}
 
 
+def two_cases() -> Study:
+    """The shipped quadrotor, its struts under two load cases, each with a limit of its own."""
+    study = load_study("gimbal_quad")
+    (strut,) = study.config.parts
+
+    def case(name: str, force: float, least: float) -> LoadCaseConfig:
+        return LoadCaseConfig(
+            name=name, loads=[LoadConfig(face="seat", force_n=(0.0, 0.0, force))], safety_factor_min=least
+        )
+
+    motor = MassOnFaceConfig(face="seat", mass_kg=0.11, point_mm=(0.0, 0.0, 18.0))
+    cases = [case("thrust", 12.0, 4.0), case("landing", 60.0, 1.5)]
+    part = msgspec.structs.replace(strut, loads=[], cases=cases, masses=[motor])
+    limits = msgspec.structs.replace(study.config.constraints, first_frequency_min_hz=60.0)
+    return replace(study, config=msgspec.structs.replace(study.config, parts=[part], constraints=limits))
+
+
 def page(arm: dict[str, Any], confirmed: dict[str, Any] | None = None) -> OrderPage:
-    """The arm of the shipped hexarotor, with made-up strength."""
-    study = load_study("hexarotor")
+    """A strut with two load cases and a motor on it, with made-up strength."""
+    study = two_cases()
     design = study.space.design(DESIGN)
-    part = study.build_parts(design)["arm"]
-    evaluation = Evaluation(
-        dict(DESIGN), "feasible", objectives={"tracking": 0.0644, "parts.arm.mass": 0.0788}, parts={"arm": arm}
-    )
-    order = Order(study, design, [Component("arm_1", part, np.eye(4))], "design 14 of a")
+    part = study.build_parts(design)["strut"]
+    numbers = {"tracking": 0.0644, "parts.strut.mass": 0.0788}
+    evaluation = Evaluation(dict(DESIGN), "feasible", objectives=numbers, parts={"strut": arm})
+    order = Order(study, design, [Component("front_strut", part, np.eye(4))], "design 14 of a")
     verdict = study_verdict(study, evaluation)
-    return OrderPage(order, evaluation, verdict, {"arm": "full geometry, whole part"}, confirmed or {})
+    return OrderPage(order, evaluation, verdict, {"strut": "full geometry, whole part"}, confirmed or {})
 
 
 def test_every_load_case_stands_with_its_limit_and_its_error() -> None:
     text = page(ARM).text([])
-    assert "| arm | thrust | (0, 0, 12)\u202fN on face seat | 19.7 | 4 | 14 ± 0.54\u202fMPa (3.9\u202f%) |" in text
-    assert "| arm | **landing**, decides | (0, 0, 60)\u202fN on face seat | **3.94** | 1.5 | 70 ± 2.7\u202fMPa" in text
-    assert "arm: face mount held; analyzed: full geometry, whole part. It carries 0.11\u202fkg on face seat" in text
+    assert "| strut | thrust | (0, 0, 12)\u202fN on face seat | 19.7 | 4 | 14 ± 0.54\u202fMPa (3.9\u202f%) |" in text
+    assert (
+        "| strut | **landing**, decides | (0, 0, 60)\u202fN on face seat | **3.94** | 1.5 | 70 ± 2.7\u202fMPa" in text
+    )
+    assert "strut: face mount held; analyzed: full geometry, whole part. It carries 0.11\u202fkg on face seat" in text
     assert "first natural frequency 62.34\u202fHz (at least 60\u202fHz); counted with it: 0.11\u202fkg on face" in text
     assert "published" not in text
     assert "5\u202f% is asked for" in text
@@ -68,9 +90,9 @@ def test_the_manifest_has_the_same_for_programs() -> None:
 
 
 def test_confirmed_numbers_stand_below_the_analyzed_ones() -> None:
-    finer = {"arm": {**ARM, "cases": {"landing": stress(3.6, 76e6, 2.3e6)}, **stress(3.6, 76e6, 2.3e6)}}
+    finer = {"strut": {**ARM, "cases": {"landing": stress(3.6, 76e6, 2.3e6)}, **stress(3.6, 76e6, 2.3e6)}}
     text = page(ARM, finer).text([])
-    assert "| arm | **landing**, decides, on a finer mesh | (0, 0, 60)\u202fN on face seat | **3.6** | 1.5 |" in text
+    assert "| strut | **landing**, decides, on a finer mesh | (0, 0, 60)\u202fN on face seat | **3.6** | 1.5 |" in text
 
 
 def test_a_peak_at_a_clamps_rim_is_told_with_what_to_do() -> None:

@@ -12,6 +12,7 @@ from codesign.problem.quantities import Quantity, quantity, words
 from codesign.report.data import ReportData
 from codesign.report.details import detail_key
 from codesign.report.objections import Objection
+from codesign.report.strength import strength_words
 from codesign.units import DEGREE
 
 STATUS = {"feasible": 0, "infeasible": 1, "failed": 2, "skipped": 3}
@@ -91,6 +92,7 @@ def _row(
         "c": [_shown(quantity(k), evaluation.constraints) for k in constraints],
         "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
+        "s": [_strength(run, evaluation, name) for name in parts],
         "fl": [_shown(quantity, evaluation.flight) for quantity in FLIGHT_FACTS],
         "detail": key,
     }
@@ -101,6 +103,12 @@ def _row(
 
 def _part(numbers: dict[str, Any]) -> list[float | None]:
     return [_rounded(numbers.get(key)) for key in PART_KEYS]
+
+
+def _strength(run: ReportData, evaluation: Evaluation, name: str) -> list[str]:
+    """Load cases, frequency and deciding place of a part in words, as confirmed where it is."""
+    part, known = run.as_confirmed(evaluation).parts.get(name), run.part_words.get(name)
+    return strength_words(name, part, run.limits, known.carried if known else "") if part else []
 
 
 def _against(found: Sequence[Objection]) -> dict[str, Any]:

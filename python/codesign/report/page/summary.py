@@ -90,6 +90,7 @@ def _build(run: ReportData) -> str:
         recommendation.why(run),
         f"{recommendation.price(run)} {recommendation.second_opinion(run)}",
         recommendation.strength(run),
+        recommendation.load_cases(run),
         recommendation.as_made(run),
         recommendation.unchecked(run),
     ]
