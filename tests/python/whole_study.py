@@ -166,7 +166,7 @@ def complete(raw: dict[str, Any]) -> None:
     complete_flight(raw)
     raw["flight"]["jets"] |= {
         "symmetric_pairs": [["front_jet", "rear_jet"]], "min_thrust_n": 5.0, "axes": 4 * [[0.0, 0.0, -1.0]],
-        "reaction_n_m_per_n": 0.01, "lag_s": [0.05, 0.05, 0.06, 0.06],
+        "reaction_n_m_per_n": 0.01, "senses": [1, -1, 1, -1], "lag_s": [0.05, 0.05, 0.06, 0.06],
     }  # fmt: skip
     raw["flight"]["ground"]["height_m"] = 0.0
     raw["objectives"]["maximize"] = ["parts.strut.safety_factor"]

@@ -34,7 +34,7 @@ from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
 from codesign.study.choices import numbers_of
 from codesign.study.config import StudyConfig
-from codesign.study.parts import make_part
+from codesign.study.parts import carried_bodies, make_part
 from codesign.units import GIGA, MEBIBYTE, MEGA, MILLIMETER
 
 # Answers of parts to unit loads, by cache key: the last of this process, since a search and its tasks repeat parts.
@@ -356,7 +356,8 @@ def _assemble(
     parts: Mapping[str, Part],
     masses: Mapping[str, Any],
 ) -> RobotDescription:
-    bodies = {name: PartBody(masses[name], part.interfaces()) for name, part in parts.items()}
+    carried = {part.name: carried_bodies(part) for part in config.parts}
+    bodies = {name: PartBody(masses[name], part.interfaces(), carried=carried[name]) for name, part in parts.items()}
     changes = config.robot.changes if config.robot is not None else []
     base = change_robot(study.base_robot, changes, numbers_of(config, design))
     return assemble(base, {part.name: part.placements for part in config.parts}, bodies)

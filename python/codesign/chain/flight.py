@@ -229,7 +229,7 @@ def actuators(flight: FlightConfig, jet_model: str) -> list[dyn.Actuator]:
     count = len(jets.frames)
     axes = np.broadcast_to(np.array(jets.axes or [(0.0, 0.0, -1.0)]), (count, 3))
     per_jet = {
-        "reaction": jets.reaction_n_m_per_n,
+        "reaction": np.multiply(jets.reaction_n_m_per_n, jets.senses or 1),
         "thrust_min": jets.min_thrust_n,
         "thrust_max": jets.max_thrust_n,
         "thrust_rate": jets.max_thrust_rate_n_s,

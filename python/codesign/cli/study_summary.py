@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,8 @@ from codesign.chain.judge import FLIGHT_MISSED, LIMITS, Limit, limits
 from codesign.cli.console import out, shown
 from codesign.problem.numbers import known_number
 from codesign.study.checking.numbers import constant_numbers
+from codesign.study.checking.problems import Problem
+from codesign.study.parts import bodies_given_twice
 
 if TYPE_CHECKING:
     from codesign.chain.study import Study
@@ -40,8 +42,14 @@ def study_summary(study: Study) -> dict[str, Any]:
         "generations": study.optimizer.generations,
         "workers": study.execution.workers,
         "control": control(study),
-        "notes": [f"{key}: {reason}" for key, reason in constant_numbers(study.config)],
+        "notes": [f"{key}: {reason}" for key, reason in notes(study)],
     }  # fmt: skip
+
+
+def notes(study: Study) -> Iterator[Problem]:
+    """What is no mistake, but may not be what was meant."""
+    yield from constant_numbers(study.config)
+    yield from bodies_given_twice(study.config, study.base_robot)
 
 
 def _unit(limit: Limit) -> str:

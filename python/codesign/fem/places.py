@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,8 @@ from codesign.fem.model import MAX_BEND_DEG, Where, resolve
 WIDE_BEND_DEG = 45.0  # a place that bends more may be more than was meant
 WIDE_SHARE = 0.5  # of the whole surface
 SAME_SHARE = 0.99  # of a place's area on one plane, cylinder, cone or sphere, for that to be its type
+MOST_FACES = 20  # of a place that are counted
+PLURALS = {kind: f"{kind}s" for kind in ("plane", "cylinder", "cone", "sphere")} | {"free": "free faces"}
 MOST_NORMALS = 1500  # looked at in pairs for the bend
 
 Array = NDArray[np.float64]
@@ -26,8 +29,9 @@ class Caught:
 
     area: [m²]. share: of the part's surface. centroid: (3,) [m]. normal: (3,) mean unit outward normal, shorter where
     the place bends. bend_deg: largest angle between two normals.
-    type: plane, cylinder, cone, sphere, or free: another shape, or several faces. facets: triangles of the file's
-    surface that belong to the place, 0 if it is cut out of larger ones. sides: of elements.
+    type: plane, cylinder, cone, sphere, or free: another shape; of several faces how many, `2 cylinders`.
+    facets: triangles of the file's surface that belong to the place, 0 if it is cut out of larger ones. sides: of
+    elements.
     """
 
     type: str
@@ -104,7 +108,15 @@ def _flat(points: Array, triangles: NDArray[np.integer[Any]]) -> tuple[Array, Ar
 
 
 def _type(surface: fem.SurfaceMesh, chosen: NDArray[np.integer[Any]]) -> str:
-    """Type of the face that (nearly) all of the chosen triangles lie on."""
-    areas = _flat(surface.points, surface.triangles)[0][chosen]
-    patch = _core.smooth_patch(surface, int(chosen[np.argmax(areas)]), np.radians(MAX_BEND_DEG))
-    return patch.type if areas[np.isin(chosen, patch.triangles)].sum() >= SAME_SHARE * areas.sum() else "free"
+    """Type of the face that (nearly) all of the chosen triangles lie on; of several faces how many of which."""
+    areas = _flat(surface.points, surface.triangles)[0]
+    whole, rest, found = areas[chosen].sum(), chosen, Counter[str]()
+    while areas[rest].sum() > (1.0 - SAME_SHARE) * whole:
+        if found.total() == MOST_FACES:
+            return "many faces"
+        patch = _core.smooth_patch(surface, int(rest[np.argmax(areas[rest])]), np.radians(MAX_BEND_DEG))
+        found[patch.type] += 1
+        rest = rest[~np.isin(rest, patch.triangles)]
+    if found.total() == 1:
+        return next(iter(found))
+    return ", ".join(f"{count} {PLURALS[kind] if count > 1 else kind}" for kind, count in found.items())

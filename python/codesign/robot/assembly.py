@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import msgspec
+import numpy as np
 
 from codesign.errors import StudyError, UrdfError
 from codesign.robot.description import RobotDescription
@@ -61,7 +62,8 @@ class PartBody:
 
     properties: mass, com, inertia (3, 3) about the com. interfaces: name -> part_T_interface (4, 4) [m].
     mesh, mirrored_mesh: path of the mesh of the part and of its mirror image as it is to stand in the URDF; None leaves
-    the link's shapes. mesh_scale: file units to meters.
+    the link's shapes. mesh_scale: file units to meters. carried: what hangs on an interface, in its axes: links without
+    a mass of their own take it.
     """
 
     properties: MassProperties
@@ -69,6 +71,7 @@ class PartBody:
     mesh: str | None = None
     mirrored_mesh: str | None = None
     mesh_scale: float = MILLIMETER
+    carried: Mapping[str, Inertial] = field(default_factory=dict)
 
 
 def assemble(
@@ -102,6 +105,12 @@ def place_interface(place: PartPlacement, part_T_interface: Matrix) -> Matrix:
     return place.link_T_part.matrix() @ local
 
 
+def place_carried(place: PartPlacement, attachment: JointAttachment, body: Inertial) -> Inertial:
+    """What hangs on an interface, given in its axes, in axes of the link that hangs there."""
+    local = body if place.mirror is None else body.mirrored(place.mirror)
+    return local.moved(np.linalg.inv(attachment.interface_T_child.matrix()))
+
+
 def place_points(place: PartPlacement, points: Matrix) -> Matrix:
     """Points (n, 3) of a placed part in link axes [m]."""
     T = place.link_T_part.matrix()
@@ -120,6 +129,9 @@ def _placed(robot: RobotDescription, place: PartPlacement, name: str, part: Part
         interface = require_pose(part.interfaces[attachment.interface], f"{name}: {attachment.interface}")
         link_T_child = place_interface(place, interface) @ attachment.interface_T_child.matrix()
         robot = robot.set_joint_origin(joint, link_T_child)
+        child = robot.joint(joint).child
+        if attachment.interface in part.carried and robot.inertial(child) is None:
+            robot = robot.replace_inertial(child, place_carried(place, attachment, part.carried[attachment.interface]))
     mesh = part.mesh if place.mirror is None else part.mirrored_mesh
     if mesh is not None:
         robot = robot.set_mesh(place.link, mesh, place.link_T_part.matrix(), part.mesh_scale)

@@ -1,10 +1,11 @@
-"""Design variables of the whole robot: joints that are shifted, links that are stretched.
+"""Design variables of the whole robot: joints that are shifted, links that are stretched or scaled.
 
 A stretch along the unit vector d of a link maps its points by x' = x + d (k - 1) (clip(d·x, from, to) - pole), with
 k = 1 + change / (to - from): what lies between `from` and `to` grows in proportion, what lies beyond is moved as it is,
 and `pole` stays. Shapes follow their ends along d and keep their section. The inertial follows as a pseudo-inertia
 (P. M. Wensing, S. Kim, J.-J. E. Slotine, "Linear matrix inequalities for physically consistent inertial parameter
-identification", RA-L 2018): an affine image of a mass distribution is one again, so every result is a possible body.
+identification", RA-L 2018): an affine image of a mass distribution is one again, so every result is a possible body. A
+scaled link is a similar body of the same density: lengths grow by k, mass by k³, inertia by k⁵.
 """
 
 from __future__ import annotations
@@ -30,17 +31,19 @@ UNIT_TOLERANCE = 1e-6  # of the length of a direction
 
 
 class RobotChange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What a design variable changes: a joint that is shifted or a link that is stretched.
+    """What a design variable changes: a joint that is shifted, a link that is stretched or scaled.
 
-    variable: in mm; per_unit times its value is the change. joint: its origin moves along direction, axes of its
-    parent. link: it is stretched along direction, link axes, between from_m and to_m, pole_m stays. mass_share: 1, mass
-    grows with the length as of a beam; 0, no mass is added.
+    variable: in mm, or `variable.key` of its choices; per_unit times its value is the change. reference_mm: the link is
+    drawn for this value of the variable and scaled about its origin to others. joint: its origin moves along direction,
+    axes of its parent. link: it is stretched along direction, link axes, between from_m and to_m, pole_m stays.
+    mass_share: 1, mass grows with the length as of a beam; 0, no mass is added.
     """
 
     variable: str
     joint: str | None = None
     link: str | None = None
-    direction: Vector
+    direction: Vector | None = None
+    reference_mm: Annotated[float, msgspec.Meta(gt=0)] | None = None
     from_m: float | None = None
     to_m: float | None = None
     pole_m: float = 0.0
@@ -50,6 +53,12 @@ class RobotChange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     def __post_init__(self) -> None:
         if (self.joint is None) == (self.link is None):
             raise ValueError("a change is that of a joint (shift) or of a link (stretch): name one of both")
+        if self.reference_mm is not None:
+            if self.link is None or (self.direction, self.from_m, self.to_m) != (None, None, None):
+                raise ValueError("reference_mm scales a link, which needs nothing else")
+            return
+        if self.direction is None:
+            raise ValueError("a shift or stretch needs its direction")
         if abs(math.hypot(*self.direction) - 1.0) > UNIT_TOLERANCE:
             raise ValueError(f"direction {list(self.direction)} is no unit vector")
         if self.link is None:
@@ -72,6 +81,9 @@ def change_robot(
     Raises: UrdfError: a link or joint is not there, or would shrink to nothing; a mesh that cannot follow.
     """
     for change in changes:
+        if change.reference_mm is not None:
+            robot = _scaled(robot, str(change.link), values[change.variable] / change.reference_mm)
+            continue
         amount = change.change(values[change.variable])
         if amount == 0.0:
             continue
@@ -81,7 +93,35 @@ def change_robot(
 
 def _shifted(robot: RobotDescription, change: RobotChange, amount: float) -> RobotDescription:
     joint = str(change.joint)
+    assert change.direction is not None
     return _move_joint(robot, joint, robot.joint_origin(joint)[:3, 3] + amount * np.array(change.direction))
+
+
+def _scaled(robot: RobotDescription, link: str, factor: float) -> RobotDescription:
+    """The robot with a link of the same density and shape, `factor` times as large; its joints move with it."""
+
+    def shapes(element: ET.Element) -> None:
+        for shape in (*element.findall("visual"), *element.findall("collision")):
+            _set_position(shape, factor * np.array(_numbers(shape.find("origin"), "xyz")))
+            geometry = shape.find("geometry")
+            for solid in geometry if geometry is not None else ():
+                if solid.tag == "mesh":
+                    solid.set(
+                        "scale", number_text([factor * float(x) for x in str(solid.get("scale", "1 1 1")).split()])
+                    )
+                for name in ("size", "radius", "length", "scale"):
+                    if text := solid.get(name):
+                        solid.set(name, number_text([factor * float(x) for x in text.split()]))
+
+    inertial = robot.inertial(link)
+    robot = robot.edited("link", link, shapes)
+    if inertial is not None:
+        grown = Inertial(factor**3 * inertial.mass, factor * inertial.com, factor**5 * inertial.inertia)
+        robot = robot.replace_inertial(link, grown)
+    for joint in robot.joint_names:
+        if robot.joint_parent(joint) == link:
+            robot = _move_joint(robot, joint, factor * robot.joint_origin(joint)[:3, 3])
+    return robot
 
 
 class Stretch:
@@ -89,7 +129,7 @@ class Stretch:
 
     def __init__(self, change: RobotChange, amount: float) -> None:
         """amount: change of the length between from_m and to_m [m]. Raises: UrdfError: nothing would be left of it."""
-        assert change.from_m is not None and change.to_m is not None
+        assert change.from_m is not None and change.to_m is not None and change.direction is not None
         self.direction = np.array(change.direction)
         self.ends, self.pole, self.mass_share = (change.from_m, change.to_m), change.pole_m, change.mass_share
         self.factor = 1.0 + amount / (change.to_m - change.from_m)

@@ -73,7 +73,8 @@ class MaterialConfig(Section, frozen=True, kw_only=True):
 class MassOnFaceConfig(Section, frozen=True, kw_only=True):
     """A rigid body that a face of the part carries, an engine, say: accelerations pull at it, frequencies count it.
 
-    Point and moments of inertia are in axes of the interface, if one is named.
+    Point and moments of inertia are in axes of the interface, if one is named; links that hang on it and have no mass
+    of their own in the robot's file take these numbers.
     """
 
     face: Name

@@ -50,8 +50,9 @@ class JetsConfig(Section, frozen=True, kw_only=True):
 
     frames: where they sit. axes: unit vectors in the frames that the thrusts push along; empty: minus z of each.
     reaction_n_m_per_n: moment about the axis per newton of thrust, the drag torque of a propeller; positive where it
-    turns the robot counter-clockwise about the axis. symmetric_pairs: frames whose thrust rates should agree. lag_s:
-    time constant of the jet model "lag".
+    turns the robot counter-clockwise about the axis. senses: 1 or -1 for each of frames, by which the reaction is
+    multiplied: one number then does for propellers that turn in turn. symmetric_pairs: frames whose thrust rates should
+    agree. lag_s: time constant of the jet model "lag".
     """
 
     frames: list[str]
@@ -60,6 +61,7 @@ class JetsConfig(Section, frozen=True, kw_only=True):
     min_thrust_n: NonNegative | list[NonNegative] = 0.0
     axes: list[Vector3] = []
     reaction_n_m_per_n: float | list[float] = 0.0
+    senses: list[Sign] = []
     lag_s: Positive | list[Positive] = 0.05
     symmetric_pairs: list[tuple[str, str]] = []
 

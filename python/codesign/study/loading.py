@@ -6,6 +6,7 @@ import copy
 import functools
 import hashlib
 import importlib
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import chain
@@ -18,6 +19,7 @@ from codesign.names import nearest
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignSpace
 from codesign.robot.description import RobotDescription
+from codesign.robot.table import generated_urdf
 from codesign.study.checking.flight import flight_problems, robot_problems
 from codesign.study.checking.problems import Problem
 from codesign.study.checking.references import reference_problems
@@ -32,6 +34,7 @@ from codesign.study.user_modules import import_beside, module_file
 
 STUDIES = PACKAGE / "studies"
 BARE_ROBOT = '<robot name="none"><link name="none"/></robot>'
+MADE_FROM = re.compile(r"<!-- made from (\S+),")  # what the table's program writes at the head of a URDF
 EXTENDS, WITHOUT = "extends", "without"  # keys of a study that states only what it does differently
 AnyStudy = TypeVar("AnyStudy", bound=StudyData)
 
@@ -93,11 +96,14 @@ def _unchecked(raw: RawStudy, path: Path, kind: Callable[..., StudyData], source
 
 
 def robot_of(config: StudyConfig, path: Path) -> RobotDescription:
-    """The robot of a study; one bare link where it has none."""
+    """The robot of a study, of a URDF or of the table it is made from; one bare link where it has none."""
     if config.robot is None:
         return RobotDescription.from_text(BARE_ROBOT)
+    file = path.parent / config.robot.urdf
     try:
-        return RobotDescription.load(path.parent / config.robot.urdf)
+        if file.suffix == ".toml":
+            return RobotDescription.from_text(generated_urdf(file), directory=file.resolve().parent)
+        return RobotDescription.load(file)
     except UrdfError as error:
         raise StudyError(f"{path}: robot.urdf: {error}") from error
 
@@ -154,12 +160,31 @@ def design_problems(study: StudyData) -> Iterator[Problem]:
         designs = designs if study.baseline is None else [study.baseline, *designs]
     except DesignError as error:
         yield "baseline", str(error)
+    yield from stale_robot(study)
     yield from robot_problems(study.config, study.base_robot)
     yield from built_problems(study.config, study.part_classes, study.base_robot, designs)
     second = [min(1, n) for n in last]
     for corner in ([0] * len(space.levels), second, last, *_other_choices(study.space)):
         configured = study.configured(space.from_indices(corner))
         yield from chain(reference_problems(configured, study.part_classes), flight_problems(configured))
+
+
+def stale_robot(study: StudyData) -> Iterator[Problem]:
+    """A URDF that is not that of the table beside it, which it says it is made from."""
+    file = study.path.parent / study.config.robot.urdf if study.config.robot is not None else None
+    if file is None or file.suffix == ".toml":
+        return
+    made = MADE_FROM.search(file.read_text(encoding="utf-8", errors="replace"))
+    table = file.with_name(made[1]) if made else file
+    if made is None or not table.is_file():
+        return
+    try:
+        current = RobotDescription.from_text(generated_urdf(table)).to_text() == study.base_robot.to_text()
+    except UrdfError as error:
+        yield "robot.urdf", f"{file.name} is made from {table.name}, which is wrong: {error}"
+        return
+    if not current:
+        yield "robot.urdf", f"{file.name} is not that of {table.name}: python -m codesign.robot.table {table} {file}"
 
 
 def _other_choices(space: DesignSpace) -> Iterator[list[int]]:

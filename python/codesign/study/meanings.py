@@ -25,7 +25,7 @@ _MEANINGS: dict[str, dict[str, str]] = {
         "optimizer": "defaults of the search",
         "execution": "defaults of how evaluations run",
     },
-    "RobotConfig": {"urdf": "path of the robot's URDF, relative to study.toml"},
+    "RobotConfig": {"urdf": "the robot's URDF, or the table (robot.toml) it is made from; relative to study.toml"},
     "VariableConfig": {
         "min": "first value of an even grid",
         "max": "last value of an even grid",

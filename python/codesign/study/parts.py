@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,12 +13,15 @@ from codesign.geometry.shape import face_names
 from codesign.parts.load_case import held_face, pressing_direction, require_bearing
 from codesign.parts.part import Part
 from codesign.problem.design_space import Design, DesignValue
-from codesign.robot.assembly import PartBody, assemble
+from codesign.robot.assembly import PartBody, assemble, place_carried
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
 from codesign.study.checking.problems import Problem, unknown
 from codesign.study.choices import numbers_of
 from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
+from codesign.units import MILLIMETER
+
+SAME_BODY = 1e-6  # relative difference of two descriptions of a body
 
 
 def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], design: Mapping[str, DesignValue]) -> Part:
@@ -27,6 +31,17 @@ def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], des
     parameters = {parameter: numbers[variable] for parameter, variable in part.parameters.items()}
     density = part.density_kg_m3 or config.materials[part.material].density_kg_m3
     return make(**parameters, **part.options, density=density)
+
+
+def carried_bodies(part: PartConfig) -> dict[str, Inertial]:
+    """What hangs on interfaces of a part, in their axes, as its masses say."""
+    return {
+        mass.interface: Inertial(
+            mass.mass_kg, MILLIMETER * np.array(mass.point_mm), np.diag(np.array(mass.inertia_kg_m2, dtype=float))
+        )
+        for mass in part.masses
+        if mass.interface
+    }
 
 
 def built_problems(
@@ -125,6 +140,42 @@ def _seat_problems(part: PartConfig, case: LoadCaseConfig, built: Part, faces: S
 
 def _loads_key(part: PartConfig, case: LoadCaseConfig) -> str:
     return f"parts.{part.name}.cases[{case.name}].loads" if part.cases else f"parts.{part.name}.loads"
+
+
+def bodies_given_twice(config: StudyConfig, robot: RobotDescription) -> Iterator[Problem]:
+    """Bodies that hang on a part and have other numbers in the robot's file than in the study's."""
+    for part in config.parts:
+        carried = carried_bodies(part)
+        told = set()
+        for place in part.placements:
+            for joint, attachment in place.joints.items():
+                child = robot.joint(joint).child
+                body, theirs = carried.get(attachment.interface), robot.inertial(child)
+                if body is None or theirs is None or attachment.interface in told:
+                    continue
+                if reason := _other_body(place_carried(place, attachment, body), theirs):
+                    told.add(attachment.interface)
+                    yield (
+                        f"parts.{part.name}.masses",
+                        f"what hangs on {attachment.interface!r} has another {reason.format(child)}; if they are one "
+                        "body, give the link no mass: it takes these numbers then",
+                    )
+
+
+def _other_body(mine: Inertial, theirs: Inertial) -> str | None:
+    """What differs between a body of the study and one of the robot's file, whose link is to be filled in."""
+    for name, here, there in (
+        ("mass", mine.mass, theirs.mass),
+        ("center of mass", mine.com, theirs.com),
+        ("inertia", mine.inertia, theirs.inertia),
+    ):
+        if not np.allclose(here, there, rtol=SAME_BODY, atol=SAME_BODY * float(np.abs(there).max())):
+            return f"{name} than the robot's link {{!r}} ({_shown(here)} and {_shown(there)})"
+    return None
+
+
+def _shown(value: Any) -> str:
+    return f"{value:g}" if np.ndim(value) == 0 else str(np.asarray(value).tolist())
 
 
 def _place_problems(part: PartConfig, robot: RobotDescription, built: Part) -> Iterator[Problem]:

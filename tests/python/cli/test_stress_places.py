@@ -57,7 +57,7 @@ def test_most_of_the_surface_is_a_warning(block):
     document = stress_document(block, 1e-3, STEEL, ["box:-1,-1,-1,41,21,5"], ["normal:0,0,1: 0 0 -100"], 5.0)
     assert document["places"][0]["type"] == "plane"  # the box holds the bottom and no whole side
     document = stress_document(block, 1e-3, STEEL, ["normal:0,0,-1:91"], ["normal:0,0,1: 0 0 -100"], 5.0)
-    assert document["places"][0]["type"] == "free"
+    assert document["places"][0]["type"] == "5 planes"
     assert any("of the whole surface" in warning for warning in document["warnings"])
 
 

@@ -58,6 +58,7 @@ def test_holes_are_chosen_by_their_radius_in_step_and_stl(files):
             files / name, ["hole:r=3"], ["face:pad: 0 0 -200" if name == "plate.step" else "near:50,15,14: 0 0 -200"]
         )
         assert document["places"][0]["area"] == pytest.approx(2 * 2 * math.pi * 3 * 8 * 1e-6, rel=0.02)
+        assert document["places"][0]["type"] == "2 cylinders"
 
 
 @pytest.mark.parametrize(

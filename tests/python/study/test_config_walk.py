@@ -23,10 +23,10 @@ from codesign.study.loading import study_from
 from whole_study import predictive, write_whole_study
 
 Place = tuple[str | int, ...]
-# Of a load: one kind; of a part: one load case or several; of a change: a joint or a link.
+# Of a load: one kind; of a part: one load case or several; of a change: a joint or a link, stretched or scaled.
 EITHER = (
     *LOAD_KINDS, "face", "interface", "point_mm", "loads", "flown", "cases", "min", "max", "step", "values", "choices",
-    "joint", "link",
+    "joint", "link", "reference_mm",
 )  # fmt: skip
 ONE_CONTROLLER = (  # has them; the other's study does without
     "mpc", "servo", "fuel", "jet_models", "waypoints", "kind", "rest_s", "duration_s", "pulses", "windows",

@@ -1,6 +1,7 @@
 """The shipped hexarotor: its arms, its propellers, its flights, and the numbers of its own."""
 
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -8,10 +9,12 @@ import pytest
 from codesign.chain.fly import fly_robot
 from codesign.chain.study import load_study
 from codesign.robot.description import RobotDescription
+from codesign.studies.hexarotor import propeller
 from codesign.studies.hexarotor.arm import Arm
-from codesign.studies.hexarotor.power import power_in_watts, propeller_diameter
+from codesign.study.loading import STUDIES
 
-DESIGN = {"length": 220, "tilt": 25, "tube": "16x2"}
+DESIGN = {"propeller": "11in", "tilt": 25, "tube": "16x2"}
+CHOICES = tomllib.loads((STUDIES / "hexarotor" / "study.toml").read_text())["variables"]["propeller"]["choices"]
 
 
 @pytest.fixture(scope="module")
@@ -39,12 +42,13 @@ def test_the_arm_weighs_what_its_solids_do():
 
 
 @pytest.mark.parametrize("trajectory", ["box", "gusts"])
-def test_it_flies(study, trajectory):
-    flown = fly_robot(study, study.build_robot(DESIGN), trajectory)
+@pytest.mark.parametrize("size", ["8in", "13in"])
+def test_it_flies(study, trajectory, size):
+    flown = fly_robot(study, study.build_robot(DESIGN | {"propeller": size}), trajectory)
     assert flown["status"] == "completed"
     assert flown["flight"]["max_attitude_error"] < 0.05
     assert flown["flight"]["max_com_error"] < 0.5
-    assert 0.2 <= flown["flight"]["min_thrust"] <= flown["flight"]["max_thrust"] <= 12.0
+    assert 0.2 <= flown["flight"]["min_thrust"] <= flown["flight"]["max_thrust"] <= propeller.MAX_THRUST
 
 
 def test_tilt_costs_thrust_and_buys_nothing_in_lift(study):
@@ -61,19 +65,59 @@ def test_sideways_flight_needs_tilt(study):
         for tilt in (15, 20, 30)
     }
     assert tracking[15] > 1.5 * tracking[20] > 5.0 * tracking[30]
+    limit = study.config.constraints.limits["tracking"].maximum
+    assert tracking[30] < limit < tracking[20]
 
 
 def test_an_arm_with_its_motor_swings_as_rayleigh_says(study):
-    design = {"length": 280, "tilt": 15, "tube": "10x2"}
+    design = {"propeller": "8in", "tilt": 15, "tube": "10x2"}
     arm = study.evaluate(design).parts["arm"]
-    stiffness = 12.0 / arm["cases"]["thrust"]["max_displacement"]
-    moving = 0.11 + 33.0 / 140.0 * arm["mass"]  # motor, and the share of a cantilever's own mass
-    assert arm["first_frequency"] == pytest.approx(math.sqrt(stiffness / moving) / (2.0 * math.pi), rel=0.02)
+    stiffness = 60.0 / arm["cases"]["landing"]["max_displacement"]
+    moving = CHOICES["8in"]["parts.arm.masses.0.mass_kg"] + 33.0 / 140.0 * arm["mass"]  # and of a cantilever's own
+    assert arm["first_frequency"] == pytest.approx(math.sqrt(stiffness / moving) / (2.0 * math.pi), rel=0.05)
+    assert arm["tolerance_reached"]
 
 
-def test_larger_propellers_take_less_power(study):
-    assert propeller_diameter(0.16) == pytest.approx(0.22)
-    hover = {"thrust_impulse": 6 * 5.0 * 12.0, "duration": 12.0}
-    power = [power_in_watts({"design": {"length": length}, "flight": hover}) for length in (160, 320)]
-    assert power[0] == pytest.approx(6 * 5.0 * math.sqrt(5.0 / (2 * 1.225 * math.pi * 0.11**2)) / 0.6)
-    assert power[0] / power[1] == pytest.approx(0.38 / 0.22)  # by the disks' diameters
+def test_propellers_of_the_study_are_those_of_the_relation():
+    assert list(CHOICES) == [f"{inches}in" for inches in range(8, 14)]
+    for name, written in CHOICES.items():
+        printed = tomllib.loads(propeller.choice(int(name.removesuffix("in"))))
+        assert printed["variables"]["propeller"]["choices"][name] == written
+
+
+def test_propellers_obey_momentum_theory_and_similarity():
+    thrust, size = 5.0, 0.254
+    ideal = thrust * math.sqrt(thrust / (2.0 * propeller.AIR_DENSITY * math.pi / 4.0 * size**2))
+    assert propeller.power(thrust, size) == pytest.approx(ideal / propeller.FIGURE_OF_MERIT)
+    turning = 2.0 * math.pi * propeller.revolutions(thrust, size) * propeller.drag_torque(size) * thrust
+    assert propeller.power(thrust, size) == pytest.approx(turning)
+    assert propeller.power(thrust, size) / propeller.power(thrust, 2.0 * size) == pytest.approx(2.0)
+    assert propeller.revolutions(thrust, size) / propeller.revolutions(thrust, 2.0 * size) == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize("size", ["8in", "13in"])
+def test_mass_and_disk_of_the_rotors_follow_the_propeller(study, size):
+    robot = RobotDescription.from_text(study.build_robot(DESIGN | {"propeller": size}))
+    written, poses = CHOICES[size], robot.frame_poses()
+    for k in range(1, 7):
+        body = robot.inertial(f"rotor_{k}")
+        assert body.mass == written["parts.arm.masses.0.mass_kg"]
+        assert body.com[2] == pytest.approx(1e-3 * written["parts.arm.masses.0.point_mm.2"])
+        disk = robot.link(f"rotor_{k}").visuals[1].geometry.cylinder
+        assert 2e3 * disk.radius == pytest.approx(written["diameter"])
+    ends = [poses[f"arm_{k}"] @ [1e-3 * written["length"], 0.0, 0.0, 1.0] for k in (1, 2)]
+    gap = np.linalg.norm(ends[0] - ends[1]) - 1e-3 * written["diameter"]
+    assert propeller.TIP_GAP - 1e-6 <= gap <= propeller.TIP_GAP + 0.005
+
+
+def test_own_numbers_are_those_of_the_flight(study):
+    document = {
+        "design": {"propeller": "10in"},
+        "flight": {"thrust_impulse": 6 * 5.0 * 12.0, "duration": 12.0},
+        "parts": {"arm": {"mass": 0.07, "first_frequency": 120.0}},
+    }
+    assert propeller.power_in_watts(document) == pytest.approx(6 * propeller.power(5.0, 0.254))
+    assert propeller.mass_in_kg(document) == pytest.approx(6 * (0.07 + 0.0971), abs=1e-3)
+    assert propeller.frequency_over_revolutions(document) == pytest.approx(
+        120.0 / propeller.revolutions(5.0, 0.254), abs=0.025
+    )

@@ -176,7 +176,7 @@ def test_new_study_refuses_a_folder_in_use(tmp_path):
         new_study(tmp_path)
 
 
-@pytest.mark.parametrize("name", [name for name in shipped_studies() if (STUDIES / name / "robot.toml").exists()])
+@pytest.mark.parametrize("name", [name for name in shipped_studies() if (STUDIES / name / "robot.urdf").exists()])
 def test_shipped_urdf_is_that_of_its_table(name):
     assert generated_urdf(STUDIES / name / "robot.toml") == (STUDIES / name / "robot.urdf").read_text()
 

@@ -15,7 +15,7 @@ from codesign.geometry.shape import Frame, Revolution, Shape, cylinder
 from codesign.parts.part import Part, parameter
 from codesign.units import DEGREE, MILLIMETER
 
-FLANGE, FLANGE_WIDTH, ROOT_FILLET = 4.0, 6.0, 3.0  # thickness, beyond the tube, where tube and flange meet
+FLANGE, FLANGE_WIDTH, ROOT_FILLET = 4.0, 8.0, 6.0  # thickness, beyond the tube, where tube and flange meet
 SEAT_RADIUS, SEAT_THICKNESS, TUBE_END = 12.0, 4.0, 16.0  # of the motor's seat; the tube beyond the motor's axis
 
 

@@ -157,6 +157,8 @@ def _per_jet_problems(flight: FlightConfig) -> Iterator[Problem]:
     for key, value in lists.items():
         if isinstance(value, list) and len(value) != count:
             yield key, f"needs one number, or {count}: one for each of flight.jets.frames"
+    if jets.senses and len(jets.senses) != count:
+        yield "flight.jets.senses", f"needs {count} entries, one for each of frames"
     if jets.axes and len(jets.axes) != count:
         yield "flight.jets.axes", f"needs {count} vectors, one for each of frames"
     for frame, axis in zip(jets.frames, jets.axes, strict=False):

@@ -38,8 +38,9 @@ def _variable_problems(config: StudyConfig) -> Iterator[Problem]:
     used = {name for part in config.parts for name in part.parameters.values()} | {c.variable for c in changes}
     for index, change in enumerate(changes):
         key = f"robot.changes[{index}].variable"
-        yield from unknown(key, "design variable", change.variable, config.variables)
-        if change.variable in config.variables and config.variables[change.variable].unit != "mm":
+        offered = _offered_numbers(config)
+        yield from unknown(key, "design variable", change.variable, offered)
+        if offered.get(change.variable, "mm") != "mm":
             yield key, f"{change.variable!r} must have the unit mm"
     for name, variable in config.variables.items():
         key = f"variables.{name}"
