@@ -61,6 +61,7 @@ _STRENGTH = (
     ("left_out.stress", "Pa", "largest stress in the zones that are left out"),
     ("left_out.position.N", "m", "where it is, part axes"),
     ("left_out.border_distance", "m", "its distance from the border of supports, loads or sharp edges"),
+    ("border_distance", "m", "of the peak from the nearest clamp or load"),
     ("max_displacement", "m", "largest displacement under the load"),
     ("work", "J", "of the loads; twice the strain energy"),
     ("time", "s", "of the flight, when a flown load case governs", FLOWN_CASE),
