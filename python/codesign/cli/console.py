@@ -64,11 +64,15 @@ def print_evaluation(evaluation: Evaluation) -> None:
             f"{part['mass']:.4f} kg, SF {_factor(part, 1)}, peak {part['peak_stress'] / 1e6:.2f} MPa"
             f" (± {part['stress_error'] / 1e6:.2f}), left out {_left_out(part)}",
         )
-        for case, found in part.get("cases", {}).items():
-            if "time" in found:
-                table.add_row(
-                    "", f"{case}: SF {_factor(found, 1)} at {found['time']:.3f} s, {found['link']}{_life(found)}"
-                )
+        cases = part.get("cases", {})
+        for case, found in cases.items():
+            when = f" at {found['time']:.3f} s, {found['link']}{_life(found)}" if "time" in found else ""
+            if when or len(cases) > 1:
+                table.add_row("", f"{case}: SF {_factor(found, 1)}{when}")
+        if part.get("peak_at_exclusion"):
+            table.add_row(
+                "", f"peak {part['border_distance'] * 1e3:.2g} mm from the rim of a clamp or load: see docs/fem.md"
+            )
         if not part.get("peak_resolved", True):
             table.add_row("", 'peak not resolved: its error exceeds half of it; set [fem] accuracy = "fine"')
     for key in ("max_com_error", "max_attitude_error", "min_thrust", "max_thrust"):

@@ -211,6 +211,11 @@ def _warnings(solved: Solved) -> list[str]:
             f"the peak stress is not resolved: its estimated error is {result.stress_error / result.peak_stress:.0%} "
             f"of it; give a smaller --edge-length than {solved.size.smallest / MILLIMETER:.3g} mm"
         )
+    if result.peak_at_exclusion:
+        found.append(
+            f"the peak stress lies {result.border_distance / MILLIMETER:.2g} mm from the rim of a clamp or load, right "
+            "beside larger stresses that are left out: how near to the rim it is read sets it, no mesh settles it"
+        )
     if result.left_out.stress > LEFT_OUT_WARNED * result.peak_stress > 0.0:
         at = ", ".join(f"{x / MILLIMETER:.2f}" for x in result.left_out.position)
         found.append(

@@ -13,6 +13,7 @@ from typing import Any
 
 from codesign.chain.confirmed import CONFIRMED
 from codesign.errors import StoreError
+from codesign.execution.pool import Limits
 from codesign.followup.reevaluate import revisit
 from codesign.followup.validation import select
 from codesign.problem.design_space import DesignValue
@@ -22,7 +23,7 @@ from codesign.report.objections import UNSETTLED
 from codesign.report.reading import read_report_data, study_of
 from codesign.search.progress import Progress
 
-PATIENCE = 5.0  # times the study's time limit of an evaluation: finer meshes, several of them
+PATIENCE, ROOM = 5.0, 2  # times the study's limits of time and memory: finer meshes, several of them
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ def confirm_designs(
     study: Any = None,
     progress: Callable[[Progress], None] | None = None,
 ) -> list[Confirmed]:
-    """Confirms designs of a run; what the run knows already is not computed again.
+    """Confirms designs of a run; what the run knows already is not computed again, unless it failed.
 
     Args:
         designs: as in `validate`. none: the recommended one, and those of the best compromises that nothing but the
@@ -55,6 +56,8 @@ def confirm_designs(
     study = study if study is not None else study_of(directory)
     if study is None:
         raise StoreError(f"{directory}: the run's study cannot be loaded, so its designs cannot be confirmed")
+    execution = study.execution
+    limits = Limits(PATIENCE * execution.time_limit_s, ROOM * execution.memory_limit_mib)
     done: dict[int, Confirmed] = {}
     while True:
         run = read_report_data(directory, study)
@@ -64,7 +67,7 @@ def confirm_designs(
             return list(done.values())
         values: list[Mapping[str, DesignValue]] = [run.entries[position].evaluation.design for position in wanted]
         records = revisit(
-            directory, [CONFIRMED], values, study=study, workers=workers, progress=progress, patience=PATIENCE
+            directory, [CONFIRMED], values, study=study, workers=workers, progress=progress, limits=limits, again=True
         )
         for position, record in zip(wanted, records, strict=True):
             entry = run.entries[position]

@@ -28,6 +28,7 @@ def revisit(
     designs: Sequence[Mapping[str, DesignValue]] | None = None,
     *,
     study: Problem | None = None,
+    again: bool = False,
     **resources: Unpack[Resources],
 ) -> list[Record]:
     """Evaluates designs of a run on other trajectories; what the run knows already is not evaluated again.
@@ -36,6 +37,7 @@ def revisit(
         out: the run's folder.
         trajectories: names of the study's trajectories.
         designs: any designs of the study; None: the run's Pareto front.
+        again: whether those that failed before are tried once more.
 
     Returns: a record a design and trajectory, in that order.
     Raises: as `optimize.resume`.
@@ -47,6 +49,8 @@ def revisit(
         if designs is not None:
             grids = [problem.space.indices(design) for design in designs]
         pairs = list(dict.fromkeys((grid, trajectory) for grid in grids for trajectory in trajectories))
+        if again:
+            store.retry(pairs)
         known = {(record.grid, record.trajectory) for record in store.records()}
         missing = [pair for pair in pairs if pair not in known]
         if missing:

@@ -159,7 +159,7 @@ class ReportData:
     def as_confirmed(self, evaluation: Evaluation) -> Evaluation:
         """An evaluation with its parts as confirmed, where the run knows that."""
         found = self.confirmed.get(tuple(evaluation.design.values()))
-        return evaluation if found is None else with_confirmed(evaluation, found.parts)
+        return with_confirmed(evaluation, found.parts) if found is not None and found.parts else evaluation
 
     @cached_property
     def choices(self) -> list[int]:

@@ -33,14 +33,14 @@ class Resources(TypedDict, total=False):
     cluster: a Dask scheduler's address (tcp://host:port), or local:N for N Dask workers here, instead of `workers`.
     cache: file of the cache of parts and designs; None: no cache; left out: the one of all runs of the study.
     progress: called with the state after every change.
-    patience: factor on the study's time limit of an evaluation.
+    limits: of an evaluation; None or left out: those of the study's [execution].
     """
 
     workers: int | None
     cluster: str | None
     cache: Path | str | None
     progress: Callable[[Progress], None] | None
-    patience: float
+    limits: Limits | None
 
 
 def optimize(
@@ -251,7 +251,7 @@ def cache_path(study: Problem, resources: Resources) -> Path | str | None:
 def make_executor(study: Problem, resources: Resources, cache: Path | str | None, tasks: int) -> Executor:
     """Local workers (no more than there are tasks) or a Dask cluster, as the arguments ask for."""
     execution = study.execution
-    limits = Limits(execution.time_limit_s * resources.get("patience", 1.0), execution.memory_limit_mib)
+    limits = resources.get("limits") or Limits(execution.time_limit_s, execution.memory_limit_mib)
     cluster = resources.get("cluster")
     if cluster is not None:
         from codesign.execution.cluster import DaskExecutor

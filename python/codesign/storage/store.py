@@ -240,6 +240,15 @@ class RunStore:
                 [(status, _grid_key(grid), trajectory) for grid in grids],
             )
 
+    def retry(self, pairs: Iterable[tuple[Grid, str]]) -> None:
+        """Makes failed rows (grid indices, trajectory) that are not the search's unfinished again."""
+        with guard(self.path):
+            self._connection.executemany(
+                "UPDATE evaluations SET status = 'queued' "
+                "WHERE grid = ? AND trajectory = ? AND status = 'failed' AND number IS NULL",
+                [(_grid_key(grid), trajectory) for grid, trajectory in pairs],
+            )
+
     def finish(self, record: Record) -> None:
         """Stores the result of an enqueued row."""
         evaluation = record.evaluation

@@ -66,3 +66,10 @@ def test_a_mesh_that_touches_itself_on_tiny_ledges_is_mentioned(tmp_path):
     faults = document["mesh"]["small_faults"]
     assert faults > 0
     assert sum(f"touches itself at {faults} places" in warning for warning in document["warnings"]) == 1
+
+
+def test_a_peak_at_a_clamps_rim_is_told(tmp_path):
+    """A cantilever is stressed most where it is clamped, so that the rule of exclusion makes the number."""
+    path = fem_surfaces.write_stl(fem_surfaces.box((60.0, 10.0, 10.0)), tmp_path / "beam.stl")
+    document = stress_document(path, 2e-3, ERGAL, ["normal:-1,0,0"], ["normal:1,0,0: 0 0 -100"], 1.0)
+    assert any("from the rim of a clamp" in warning for warning in document["warnings"])

@@ -92,6 +92,35 @@ def test_a_design_that_fails_on_a_finer_mesh_gives_way(tmp_path: Path, monkeypat
     assert "a safety factor of 9, below its limit 10" in told.reasons[0]
 
 
+def test_what_could_not_be_confirmed_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path / "a", {"safety_factor": 30.0, "peak_stress": 15e6, "stress_error": 4e5})
+    run = read_report_data(tmp_path / "a", STUDY)
+    assert run.recommended is not None
+    design = run.entries[run.recommended].evaluation.design
+    failed = Evaluation.failure(dict(design), "memory limit of 2048 MiB exceeded")
+    run = replace(run, confirmed={tuple(design.values()): failed})
+    assert run.recommended is not None
+    verdict = run_verdict(run, run.recommended)
+    assert verdict.notes[0] == ("Its parts could not be confirmed on a finer mesh: memory limit of 2048 MiB exceeded.")
+    assert verdict.remedies[-1].startswith("Search on")
+
+
+def test_failed_confirmations_are_tried_again(tmp_path: Path) -> None:
+    """A row that is not the search's is unfinished again after a failure; those of the search are left alone."""
+    write(tmp_path / "a", LOOSE)
+    record = load_run(tmp_path / "a").search_records[0]
+    design, grid = record.evaluation.design, record.grid
+    with RunStore.open(tmp_path / "a") as store:
+        for reason in ("out of memory", None):
+            store.enqueue([(None, None, grid, dict(design))], STUDY.hash, CONFIRMED)
+            found = Evaluation.failure(dict(design), reason) if reason else Evaluation(dict(design), "skipped")
+            store.finish(Record(None, None, grid, CONFIRMED, found))
+            store.retry([(grid, CONFIRMED), (grid, "")])
+        (kept,) = [r for r in store.records() if r.trajectory == CONFIRMED]
+        assert kept.evaluation.status == "skipped"
+        assert [r for r in store.records() if r.grid == grid and r.trajectory == ""] == [record]
+
+
 def test_flown_load_cases_keep_their_numbers() -> None:
     """Confirmed are static cases alone; where a flown one decides, the part's own numbers stay."""
     flown = {"safety_factor": 8.0, "peak_stress": 58e6, "stress_error": 2e6}
