@@ -62,7 +62,7 @@ def late_growth(values: Matrix, usable: Mask, front: Sequence[int], share: float
         return 0.0, 0
     early = np.arange(len(values)) < (1.0 - share) * len(values)
     box = Hypervolume(values[front])
-    growth = 1.0 - box.of(values[early & usable]) / box.of(values[front])
+    growth = 1.0 - box.of(values[early & usable]) / box.of(values[front], front=True)
     return growth, int((~early[front]).sum())
 
 
@@ -77,6 +77,6 @@ def hypervolume_history(values: Matrix, usable: Mask) -> Matrix:
     for i, row in enumerate(values):
         if usable[i] and not (front <= row).all(axis=1).any():
             front = np.vstack([front[~(front >= row).all(axis=1)], row])
-            volume = box.of(front)
+            volume = box.of(front, front=True)
         history[i] = volume
     return history

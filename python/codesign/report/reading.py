@@ -19,7 +19,7 @@ from codesign.report.data import Entry, ReportData
 from codesign.report.details import load_details
 from codesign.report.study_words import flight_words, objective_quantities, part_words
 from codesign.report.tolerances import load_tolerances
-from codesign.storage.runs import Run, load_run
+from codesign.storage.runs import Run, load_run, run_study
 
 logger = logging.getLogger(__name__)
 
@@ -82,7 +82,7 @@ def study_of(directory: Path) -> Any:
     """The study of a run, or None with a logged reason: a report must come out without it too."""
     from codesign.chain.study import load_study
 
-    source = load_run(directory).study["source"]
+    source = run_study(directory)["source"]
     try:
         return load_study(source)
     except CodesignError as error:
@@ -92,7 +92,7 @@ def study_of(directory: Path) -> Any:
 
 def same_study(directory: Path, study: Any) -> bool:
     """Whether the study, as it is now, would give the run's numbers again."""
-    return study is not None and load_run(directory).study["hash"] == study.hash
+    return study is not None and run_study(directory)["hash"] == study.hash
 
 
 def _stored_baseline(run: Run, study: Any) -> Evaluation | None:
@@ -100,7 +100,7 @@ def _stored_baseline(run: Run, study: Any) -> Evaluation | None:
         return None
     try:
         grid = run.space.indices(study.baseline)
-    except DesignError:  # the study has other variables by now
+    except DesignError:  # the study has other variables by now, or another grid
         return None
     for record in run.records:
         if record.grid == grid and record.trajectory == "":

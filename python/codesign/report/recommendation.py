@@ -47,7 +47,8 @@ def _guarded(run: ReportData) -> bool:
 
 def left_out(run: ReportData) -> str:
     """How many of the best compromises are no choice, and why."""
-    others = [i for i in run.front if i not in run.choices]
+    choices = set(run.choices)
+    others = [i for i in run.front if i not in choices]
     if not others:
         return ""
     if len(others) == 1:

@@ -110,6 +110,13 @@ def load_run(out: str | Path) -> Run:
         )
 
 
+def run_study(out: str | Path) -> dict[str, Any]:
+    """What a run says of its study (source, hash, identity), without reading its rows. Raises: StoreError."""
+    with RunStore.read(out) as store:
+        study: dict[str, Any] = store.meta["study"]
+        return study
+
+
 def find_runs(folder: str | Path) -> Iterator[Path]:
     """Folders of runs: `folder` itself and those below it, sorted."""
     for database in sorted(Path(folder).rglob(DATABASE)):

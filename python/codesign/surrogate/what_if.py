@@ -163,7 +163,8 @@ class WhatIf:
 
 def chosen(count: int, front: Sequence[int]) -> tuple[int, ...]:
     """Positions of at most MOST_POINTS of `count` designs: the front, and others spread evenly."""
-    others = [i for i in range(count) if i not in set(front)]
+    best = set(front)
+    others = [i for i in range(count) if i not in best]
     kept = list(front)[:MOST_POINTS]
     room = min(MOST_POINTS - len(kept), len(others))
     spread = [others[int(i)] for i in np.linspace(0, len(others) - 1, room).round()] if room else []

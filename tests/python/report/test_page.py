@@ -210,3 +210,28 @@ def test_odd_runs_open_without_errors(browser, tmp_path, kind):
     ) as page:
         assert page.locator("h1").inner_text() == STUDY.title
         assert page.locator("#provenance").count() == 1
+
+
+def test_of_many_designs_those_in_view_are_drawn_and_the_front_whole(browser, tmp_path, monkeypatch):
+    monkeypatch.setattr("codesign.surrogate.what_if.MOST_POINTS", 30)
+    synthetic_run.write_run(tmp_path / "run", synthetic_run.evaluations(4000))
+    written = write_report(tmp_path / "run", study=STUDY, figures=False, compute=False).html
+    with visit(browser, written.as_uri()) as page:
+        page.wait_for_selector("#front .points path")
+        front, behind = page.evaluate("[points(d => d.front).length, points(d => !d.front && d !== original).length]")
+        page.evaluate("Plotly.relayout('front', {'xaxis.autorange': true, 'yaxis.autorange': true})")
+        page.locator("#front-thinned", has_text="designs in view").wait_for()
+        drawn = page.evaluate("element('front').data.map(trace => trace.x.length)")
+        assert drawn[2] == front
+        assert drawn[0] + drawn[1] < behind
+        left = behind - drawn[0] - drawn[1]
+        assert page.locator("#front-thinned").inner_text().startswith(f"{left} of {behind} designs in view")
+        page.locator("[data-filter=all]").click()
+        assert page.locator("#designs-body tr[data-design]").count() < 400
+        last = page.evaluate("select(table.rows.at(-1)), table.rows.at(-1)")
+        row = page.locator(f"#designs-body tr[data-design='{last}'][aria-selected=true]")
+        row.focus()
+        page.keyboard.press("Home")
+        page.locator("#designs-body tr:focus[data-design='0']").wait_for()
+        page.keyboard.press("ArrowDown")
+        page.locator("#designs-body tr:focus[data-design='1'][aria-selected=true]").wait_for()

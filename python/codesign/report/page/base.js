@@ -1,6 +1,7 @@
 'use strict';
 const report = JSON.parse(document.getElementById('data').textContent);
 const designs = report.designs;
+const places = new Map(designs.map((design, i) => [design, i]));
 const original = report.baseline === null ? null : designs[report.baseline];
 const FEASIBLE = 0, INFEASIBLE = 1, FAILED = 2, SKIPPED = 3;
 const STATUS = ['feasible', 'infeasible', 'failed', 'not computed'];
@@ -26,7 +27,7 @@ const name = design => design === original && design.id === null ? 'Original' : 
 
 /** What a design is, in words, for its tags. */
 function roles(design) {
-  const index = designs.indexOf(design), found = [];
+  const index = places.get(design), found = [];
   if (index === report.recommended) found.push('recommended');
   if (design === original) found.push('original');
   report.objectives.forEach(o => { if (report.best[o.key] === index) found.push('lowest ' + o.label.toLowerCase()); });

@@ -5,6 +5,46 @@ const front = {x: 0, y: Math.min(1, report.objectives.length - 1), ready: false,
 const points = test => designs.map((d, i) => i).filter(i => test(designs[i]) && known(designs[i].f[front.x]) && known(designs[i].f[front.y]));
 const third = () => report.objectives.map((o, k) => k).find(k => k !== front.x && k !== front.y);
 
+const MOST_DOTS = 2000;  // behind the front: of more, one for each spot of the chart
+const SPOTS = 150;  // along each axis; fewer where still more than MOST_DOTS are left
+
+/** Of many designs behind the front those that are drawn, and the size of a spot (share of each axis; 0: all are drawn). */
+function thinned(indices, ranges) {
+  let drawn = indices, spots = SPOTS;
+  for (; drawn.length > MOST_DOTS; spots = Math.floor(spots / 1.2)) {
+    const taken = new Set();
+    drawn = indices.filter(i => {
+      const spot = [front.x, front.y].map((k, a) => Math.floor(spots * (designs[i].f[k] - ranges[a][0]) / (ranges[a][1] - ranges[a][0]))).join();
+      return taken.size < taken.add(spot).size;
+    });
+    if (drawn.length <= MOST_DOTS) return [drawn, 1 / spots];
+  }
+  return [drawn, 0];
+}
+
+/** The dots behind the front, infeasible and other ones, within what the axes show; and a sentence on those left out. */
+function dots(ranges) {
+  const groups = [points(d => d.status === INFEASIBLE), points(d => d.status === SKIPPED || d.status === FEASIBLE && !d.front)];
+  const inside = i => [front.x, front.y].every((k, a) => designs[i].f[k] >= ranges[a][0] && designs[i].f[k] <= ranges[a][1]);
+  const seen = groups.flat().filter(inside), [kept, spot] = thinned(seen, ranges);
+  const [away] = thinned(groups.flat().filter(i => !inside(i)), ranges), drawn = new Set([...kept, ...away]);
+  const left = seen.length - kept.length;
+  front.thinned = left ? `${left} of ${seen.length} designs in view behind the best compromises are not drawn: each is within ${percent(spot).slice(1)} of both axes of one that is. Zoom in to see more; the table has all.` : '';
+  return groups.map(group => group.filter(i => drawn.has(i)));
+}
+
+/** Draws the dots anew for what the axes show after a zoom. */
+function drawDots() {
+  const plot = element('front'), told = front.thinned;
+  const groups = dots([plot.layout.xaxis.range, plot.layout.yaxis.range]);
+  if (!told && !front.thinned) return;
+  const traces = groups.map(group => markers(group, {}, ''));
+  const of = key => traces.map(trace => trace[key]);
+  plotly().restyle(plot, {x: of('x'), y: of('y'), text: of('text'), customdata: of('customdata')}, [0, 1]);
+  sayThinned();
+}
+const sayThinned = () => { element('front-thinned').textContent = front.thinned; };
+
 function hoverText(i) {
   const d = designs[i];
   const values = report.objectives.map((o, k) => `${escaped(o.label)} <b>${number(d.f[k])}</b> ${escaped(o.unit)} ${percent(change(d, k))}`);
@@ -20,14 +60,14 @@ function markers(indices, marker, label) {
 }
 
 function frontTraces() {
-  const z = third(), best = points(d => d.front && d.status === FEASIBLE);
+  const z = third(), [infeasible, behind] = dots([front.x, front.y].map(k => report.objectives[k].view)), best = points(d => d.front && d.status === FEASIBLE);
   const scale = known(z) ? {
     color: best.map(i => designs[i].f[z]), colorscale: 'Viridis', reversescale: false, showscale: true,
     colorbar: {title: {text: report.objectives[z].title, side: 'right', font: font()}, thickness: 10, outlinewidth: 0, len: 0.8, tickfont: font(), ticklen: 0},
   } : {color: color('accent')};
   const traces = [
-    markers(points(d => d.status === INFEASIBLE), {symbol: 'x-thin', size: 6, line: {width: 1.2, color: color('lost')}}, 'infeasible'),
-    markers(points(d => d.status === SKIPPED || d.status === FEASIBLE && !d.front), {size: 6, color: color('dot'), opacity: 0.75}, 'feasible, or not computed'),
+    markers(infeasible, {symbol: 'x-thin', size: 6, line: {width: 1.2, color: color('lost')}}, 'infeasible'),
+    markers(behind, {size: 6, color: color('dot'), opacity: 0.75}, 'feasible, or not computed'),
     markers(best, {size: 10, symbol: best.map(i => designs[i].barred ? 'circle-open' : 'circle'), line: {width: 1, color: color('bg')}, ...scale}, 'best compromise'),
   ];
   const at = points(d => d === original);
@@ -60,8 +100,10 @@ function drawFront() {
   const inside = ([low, high], value) => value >= low && value <= high;
   const away = points(() => true).filter(i => !inside(x.view, designs[i].f[front.x]) || !inside(y.view, designs[i].f[front.y])).length;
   element('front-outside').textContent = away ? `${away} ${away === 1 ? 'design lies' : 'designs lie'} outside of this view; double-click the chart to see all.` : '';
+  sayThinned();
   if (!front.ready) {
     front.ready = true;
+    plot.on('plotly_relayout', change => { if (Object.keys(change).some(key => /^[xy]axis/.test(key))) drawDots(); });
     plot.on('plotly_click', event => { const i = event.points[0].customdata; if (known(i)) select(i, {scroll: true}); });
     plot.on('plotly_hover', event => { const i = event.points[0].customdata; if (known(i)) hover(i, 'front'); });
     plot.on('plotly_unhover', () => hover(null, 'front'));

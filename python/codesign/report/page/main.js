@@ -50,6 +50,7 @@ function save(what) {
 function forPaper(starts) {
   document.documentElement.classList.toggle('printing', starts);
   paint(starts ? 'light' : remembered() || (system.matches ? 'dark' : 'light'));
+  drawTable();
   if (starts) { drawFront(); [...waiting.keys()].forEach(drawNow); }
   document.querySelectorAll('.js-plotly-plot').forEach(node => plotly().relayout(node, starts ? {width: node.clientWidth, height: node.clientHeight} : {width: null, height: null, autosize: true}));
 }

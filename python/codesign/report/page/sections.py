@@ -78,7 +78,7 @@ def _trade_offs(run: ReportData) -> Block:
     label = "All designs in two objectives. The table of all designs holds the same and can be used with the keyboard."
     body = (
         f'<div class="trade"><div class="chart"><div id="front" role="img" aria-label="{label}"></div>'
-        f'<ul class="key">{key}</ul><p class="count"><span id="front-outside"></span> '
+        f'<ul class="key">{key}</ul><p class="count"><span id="front-outside"></span> <span id="front-thinned"></span> '
         '<button type="button" class="link" data-save="front">Save as PNG</button></p>'
         f"{_weights(run)}{comparison_table(run)}</div>"
         f"{CARD}</div>{ANNOUNCEMENT}"

@@ -1,5 +1,8 @@
 /** The table of designs: filter, sort, select by mouse or keyboard. */
-const table = {filter: 'front', key: null, descending: false};
+const table = {filter: 'front', key: null, descending: false, rows: [], height: 0, drawn: [0, 0]};
+const WHOLE = 400;  // rows that are drawn at once; of more, those in view and AROUND of them before and after
+const AROUND = 60;
+const PRINTED = 2000;  // rows that go on paper
 const FILTERS = {
   front: d => d.front, feasible: d => d.status === FEASIBLE, all: () => true, rejected: d => d.status !== FEASIBLE,
 };
@@ -34,15 +37,45 @@ function drawTable() {
     return `<th scope="col" class="${c.text_align ? 'text' : ''}" aria-sort="${sort}"><button type="button" data-column="${k}"><span>${escaped(c.head)}</span><small>${escaped(c.unit || '') || '&nbsp;'}</small></button></th>`;
   }).join('') + '</tr>';
   const rows = designs.map((d, i) => i).filter(i => FILTERS[table.filter](designs[i]));
-  if (table.key !== null) rows.sort((i, j) => compare(shownColumns[table.key].value(designs[i]), shownColumns[table.key].value(designs[j])));
+  if (table.key !== null) {
+    const values = designs.map(shownColumns[table.key].value);
+    rows.sort((i, j) => compare(values[i], values[j]));
+  }
   table.rows = rows;
-  body.innerHTML = rows.map(i => `<tr tabindex="-1" data-design="${i}" aria-selected="false">` +
-    shownColumns.map(c => `<td class="${c.text_align ? 'text' : ''}">${c.text(designs[i])}</td>`).join('') + '</tr>').join('') ||
-    `<tr><td class="text" colspan="${shownColumns.length}">No such design in this run.</td></tr>`;
-  element('designs-count').textContent = `${rows.length} of ${designs.length} designs`;
+  drawRows();
   document.querySelectorAll('[data-filter]').forEach(b => b.setAttribute('aria-pressed', b.dataset.filter === table.filter));
-  markRow();
   hintSideways();
+}
+
+/** The rows that are in view, or all of a short table; spaces stand for the others, so that the bar at the side is right. */
+function drawRows() {
+  const body = element('designs-body'), box = element('designs-scroll'), count = table.rows.length;
+  const printing = document.documentElement.classList.contains('printing');
+  const top = table.height ? Math.min(Math.floor(box.scrollTop / table.height), count - 1) : 0;
+  const seen = table.height ? Math.ceil(box.clientHeight / table.height) : AROUND;
+  const [first, end] = printing ? [0, Math.min(count, PRINTED)] : count <= WHOLE ? [0, count] : [Math.max(0, top - AROUND), Math.min(count, top + seen + AROUND)];
+  const focused = body.contains(document.activeElement) ? document.activeElement.dataset.design : null;
+  const space = rows => rows && !printing ? `<tr class="space" aria-hidden="true"><td colspan="${shownColumns.length}" style="height:${rows * table.height}px"></td></tr>` : '';
+  const rows = table.rows.slice(first, end).map((i, k) => `<tr tabindex="-1" data-design="${i}" aria-selected="false" aria-rowindex="${first + k + 2}">` +
+    shownColumns.map(c => `<td class="${c.text_align ? 'text' : ''}">${c.text(designs[i])}</td>`).join('') + '</tr>').join('');
+  body.innerHTML = count ? space(first) + rows + space(count - end) : `<tr><td class="text" colspan="${shownColumns.length}">No such design in this run.</td></tr>`;
+  body.closest('table').setAttribute('aria-rowcount', count + 1);
+  table.drawn = [first, end];
+  if (!table.height && end < count && !printing) {
+    table.height = body.firstElementChild.getBoundingClientRect().height;
+    body.insertAdjacentHTML('beforeend', space(count - end));
+  }
+  if (end - first < count && !printing) element('designs-head').querySelectorAll('th').forEach(th => { th.style.minWidth = `${th.offsetWidth}px`; });
+  element('designs-count').textContent = `${count} of ${designs.length} designs` + (printing && end < count ? `, the first ${end} of them here` : '');
+  markRow();
+  if (focused !== null) rowOf(focused)?.focus({preventScroll: true});
+}
+
+/** Draws the rows that have come into view. */
+function followScroll() {
+  const box = element('designs-scroll'), top = box.scrollTop / (table.height || 1);
+  const [first, end] = table.drawn, last = top + box.clientHeight / (table.height || 1);
+  if (end - first < table.rows.length && (top < first || last > end)) drawRows();
 }
 
 const rowOf = i => element('designs-body')?.querySelector(`tr[data-design="${i}"]`);
@@ -72,8 +105,10 @@ function hintSideways() {
 
 /** Scrolls the table, not the page, to the selected row. */
 function revealRow() {
-  const row = rowOf(state.selected), box = element('designs-scroll');
-  if (row) box.scrollTop = row.offsetTop - box.clientHeight / 2;
+  const box = element('designs-scroll'), at = table.rows.indexOf(state.selected);
+  if (!box || at < 0) return;
+  if (!rowOf(state.selected)) { box.scrollTop = at * table.height - box.clientHeight / 2; drawRows(); }
+  box.scrollTop = rowOf(state.selected).offsetTop - box.clientHeight / 2;
 }
 
 function tableControls() {
@@ -94,9 +129,15 @@ function tableControls() {
   body.addEventListener('mouseover', event => hover(target(event), 'table'));
   body.addEventListener('mouseleave', () => hover(null, 'table'));
   body.addEventListener('keydown', event => {
-    const row = event.target.closest('tr[data-design]');
-    const next = {ArrowDown: row?.nextElementSibling, ArrowUp: row?.previousElementSibling, Home: body.firstElementChild, End: body.lastElementChild}[event.key];
-    if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); select(Number(row.dataset.design)); }
-    else if (next) { event.preventDefault(); next.focus(); select(Number(next.dataset.design)); }
+    const i = target(event), at = table.rows.indexOf(i);
+    const next = table.rows[{ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: table.rows.length - 1}[event.key]];
+    if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); select(i); }
+    else if (known(next)) { event.preventDefault(); select(next); rowOf(next).focus({preventScroll: true}); }
+  });
+  let asked = false;
+  element('designs-scroll').addEventListener('scroll', () => {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => { asked = false; followScroll(); });
   });
 }
