@@ -22,14 +22,34 @@ def objective_rows(evaluations: Iterable[Evaluation], names: Sequence[str]) -> n
 def non_dominated(values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     """(n,) True where no other row of (n, objectives) is at least as good in all and better in one objective.
 
-    Of equal rows all are kept.
+    Of equal rows all are kept. Rows go by their sum, so that a row meets whatever dominates it before its own turn.
     """
-    keep = np.ones(len(values), dtype=bool)
-    for i, row in enumerate(values):
-        if keep[i]:
-            dominated = (row <= values).all(axis=1) & (row < values).any(axis=1)
-            keep &= ~dominated
+    keep = np.zeros(len(values), dtype=bool)
+    waiting = np.lexsort((*values.T[::-1], values.sum(axis=1)))
+    rows = values[waiting]
+    while len(waiting):
+        nowhere_better = (rows[0] <= rows).all(axis=1)
+        nowhere_better[0] = True  # of a row with NaN as well
+        equal = nowhere_better & (rows[0] == rows).all(axis=1)
+        keep[waiting[0]] = keep[waiting[equal]] = True
+        waiting, rows = waiting[~nowhere_better], rows[~nowhere_better]
     return keep
+
+
+def joined(
+    front: npt.NDArray[np.float64], new: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Which rows of a front (n, objectives) and of new ones (k, objectives) are the front of both: two masks.
+
+    Rows of `front` must not dominate each other. The work is n k, not (n + k)^2.
+    """
+    enter = non_dominated(new)
+    for i in np.flatnonzero(enter):
+        enter[i] = not ((front <= new[i]).all(axis=1) & (front < new[i]).any(axis=1)).any()
+    stay = np.ones(len(front), dtype=bool)
+    for row in new[enter]:
+        stay &= ~((row <= front).all(axis=1) & (row < front).any(axis=1))
+    return stay, enter
 
 
 def rival_of(rivals: Iterable[Rival], objectives: Iterable[float]) -> int | None:
@@ -54,16 +74,19 @@ class Hypervolume:
         self.reference: npt.NDArray[np.float64] = worst + MARGIN * extent
         self.scale: npt.NDArray[np.float64] = self.reference - best
 
-    def of(self, values: npt.NDArray[np.float64]) -> float:
-        """Hypervolume of (n, objectives) values; those beyond the reference point add nothing."""
+    def of(self, values: npt.NDArray[np.float64], front: bool = False) -> float:
+        """Hypervolume of (n, objectives) values; those beyond the reference point add nothing.
+
+        front: whether it is known that none of them dominates another.
+        """
         from pymoo.indicators.hv import Hypervolume as Indicator
 
         inside = values[(values < self.reference).all(axis=1)]
         if not len(inside):
             return 0.0
         scaled = np.unique((inside - self.reference) / self.scale, axis=0)
-        front = scaled[non_dominated(scaled)]
-        return float(Indicator(ref_point=np.zeros(front.shape[1]))(front))
+        best = scaled if front else scaled[non_dominated(scaled)]
+        return float(Indicator(ref_point=np.zeros(best.shape[1]))(best))
 
 
 class FrontTracker:
@@ -85,10 +108,13 @@ class FrontTracker:
 
     def add(self, evaluations: Iterable[Evaluation]) -> float | None:
         """Takes a batch of new evaluations into account; returns the hypervolume, None before any is feasible."""
-        values = objective_rows(evaluations, self._names)
+        return self.add_values(objective_rows(evaluations, self._names))
+
+    def add_values(self, values: npt.NDArray[np.float64]) -> float | None:
+        """The same for (n, objectives) values of feasible designs."""
         if len(values):
             if self._hypervolume is None:
                 self._hypervolume = Hypervolume(values)
-            both = np.vstack([self._front, values])
-            self._front = both[non_dominated(both)]
-        return None if self._hypervolume is None else self._hypervolume.of(self._front)
+            stay, enter = joined(self._front, values)
+            self._front = np.vstack([self._front[stay], values[enter]])
+        return None if self._hypervolume is None else self._hypervolume.of(self._front, front=True)

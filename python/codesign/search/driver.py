@@ -50,20 +50,21 @@ class SearchDriver:
     ) -> None:
         self._study, self._search, self._schedule, self._stop = study, plan.search, plan.schedule, plan.stop
         self._store, self._cache, self._notify, self._total = store, cache, progress, plan.total
-        self._known = {record.grid: record for record in store.records() if record.trajectory == ""}
+        self._known = store.known()
         self._stored = len(self._known)
         self._asked_before = store.asked()
         self._repeatable = plan.search if isinstance(plan.search, Repeatable) else None
         self._batches: deque[_Batch] = deque()
         self._results: dict[Grid, Evaluation] = {}
         self._grids: list[Grid] = []  # by number
+        self._numbers: dict[Grid, int] = {}
         self._told = 0
         self._rivals = Rivals(study.objectives) if plan.lazy and isinstance(study, LazyProblem) else None
-        self._rivals_of: dict[int, tuple[Rival, ...]] = {}  # by number
+        self._rivals_of: dict[int, tuple[Rival, ...]] = {}  # by number, of those in the queue
         self._told_counts = {"feasible": 0, "infeasible": 0, "skipped": 0, "failed": 0}
         self._counts = dict(self._told_counts)
-        for record in self._known.values():
-            self._counts[record.evaluation.status] += 1
+        for _, status in self._known.values():
+            self._counts[status] += 1
         self._cached = 0
         self._queue: deque[int] = deque()
         self._running: set[int] = set()
@@ -147,8 +148,7 @@ class SearchDriver:
     def _end_generation(self) -> None:
         self._history.append(self._tracker.add(self._generation))
         self._generation = []
-        numbers = {grid: number for number, grid in enumerate(self._grids)}
-        population = tuple(numbers[grid] for grid in self._search.population())
+        population = tuple(self._numbers[grid] for grid in self._search.population())
         state = Generation(
             len(self._history) - 1,
             self._told,
@@ -172,6 +172,7 @@ class SearchDriver:
             return False
         self._batches.append(_Batch(asked, grids))
         self._grids += grids
+        self._numbers |= zip(grids, range(asked, asked + len(grids)), strict=True)
         self._admit(asked, grids)
         return True
 
@@ -196,35 +197,36 @@ class SearchDriver:
         """Makes rows of newly asked designs; takes from the store and the cache what they have."""
         designs = {grid: self._study.space.from_indices(grid).to_dict() for grid in grids}
         rows = list(enumerate(grids, asked))
-        if self._rivals is not None:
-            self._rivals_of |= dict.fromkeys(range(asked, asked + len(grids)), self._rivals.front)
+        rivals = None if self._rivals is None else self._rivals.front
         new = [(number, grid) for number, grid in rows if grid not in self._known]
         generation = asked // self._schedule.first
         with self._store.transaction():
             self._store.enqueue([(n, generation, grid, designs[grid]) for n, grid in rows], self._study.hash)
             for number, grid in new:
-                known = self._known_before(number, grid)
+                known = self._known_before(grid, rivals)
                 if known is None:
                     self._queue.append(number)
+                    if rivals is not None:
+                        self._rivals_of[number] = rivals
                 else:
                     self._cached += 1
                     self._keep(Record(number, None, grid, "", known, cached=True))
         for number, grid in enumerate(grids, asked):
             if grid in self._known:
-                record = self._known.pop(grid)
-                if record.number not in (None, number):
+                stored, _ = self._known.pop(grid)
+                if stored not in (None, number):
                     raise StoreError(
                         f"{self._store.path}: this program asks for the stored designs in another order; "
                         f"use the versions that the run was made with: {self._store.sessions()[0]['provenance']}"
                     )
-                self._results[grid] = record.evaluation
+                self._results[grid] = self._store.evaluation(grid)
 
-    def _known_before(self, number: int, grid: Grid) -> Evaluation | None:
+    def _known_before(self, grid: Grid, rivals: tuple[Rival, ...] | None) -> Evaluation | None:
         """The evaluation in the cache, if it is what would be computed now."""
         known = known_evaluation(self._study, grid, self._cache)
-        if known is None or self._rivals is None:
+        if known is None or rivals is None:
             return known
-        whole = known.status == "feasible" and rival_of(self._rivals_of[number], known.objectives.values()) is None
+        whole = known.status == "feasible" and rival_of(rivals, known.objectives.values()) is None
         return known if whole else None
 
     def _hand_out(self, executor: Executor) -> None:
@@ -232,7 +234,7 @@ class SearchDriver:
             number = self._queue.popleft()
             self._running.add(number)
             design = self._study.space.from_indices(self._grids[number]).to_dict()
-            executor.submit(Task(number, design, rivals=self._rivals_of.get(number)))
+            executor.submit(Task(number, design, rivals=self._rivals_of.pop(number, None)))
         with self._store.transaction():
             self._store.mark([self._grids[number] for number in self._running], "running")
 

@@ -125,12 +125,12 @@ def _common(
         """Removes individuals asked for before, in this batch or in any."""
 
         def do(self, pop: Any, *others: Any, **_: Any) -> Any:
-            known = set(taken).union(*({_grid(individual.X) for individual in other} for other in others))
+            here = {_grid(individual.X) for other in others for individual in other}
             fresh = []
             for i, individual in enumerate(pop):
                 grid = _grid(individual.X)
-                if grid not in known:
-                    known.add(grid)
+                if grid not in taken and grid not in here:
+                    here.add(grid)
                     fresh.append(i)
             return pop[fresh]
 

@@ -34,6 +34,8 @@ from codesign.storage.database import (
 )
 from codesign.storage.records import Generation, Grid, Record
 
+FINISHED_ROW = "status NOT IN ('queued', 'running')"
+DECODED = 256  # rows whose JSON is read at a time
 UNFINISHED_ROW = "grid = ? AND trajectory = ? AND status IN ('queued', 'running')"
 JSON_FIELDS = (
     "objectives",
@@ -265,23 +267,36 @@ class RunStore:
 
     def records(self) -> list[Record]:
         """All finished rows: the search's in the order it asked for them, then the others."""
-        columns = ("number", "generation", "grid", "trajectory", "cached", "worker", "wall_seconds")
-        fields = ("design", "status", "reason", *JSON_FIELDS)
-        statement = (
-            f"SELECT {', '.join(columns + fields)} FROM evaluations WHERE status NOT IN ('queued', 'running') "
-            "ORDER BY number IS NULL, number, id"
+        return list(self._finished())
+
+    def known(self) -> dict[Grid, tuple[int | None, str]]:
+        """Number and status of the designs that are finished on the study's own trajectory, by grid point."""
+        statement = f"SELECT grid, number, status FROM evaluations WHERE {FINISHED_ROW} AND trajectory = ''"
+        return {tuple(json.loads(grid)): (number, status) for grid, number, status in self._execute(statement)}
+
+    def evaluation(self, grid: Grid) -> Evaluation:
+        """The result of a design that is finished on the study's own trajectory. Raises: StoreError if it is not."""
+        for record in self._finished("AND grid = ? AND trajectory = ''", (_grid_key(grid),)):
+            return record.evaluation
+        raise StoreError(f"{self.path}: no finished row for the design {list(grid)}")
+
+    def _finished(self, which: str = "", values: Sequence[Any] = ()) -> Iterator[Record]:
+        columns = ("number", "generation", "trajectory", "cached", "worker", "wall_seconds", "status", "reason")
+        documents = ("grid", "design", *JSON_FIELDS)
+        rows = self._execute(
+            f"SELECT {', '.join(columns + documents)} FROM evaluations WHERE {FINISHED_ROW} {which} "
+            "ORDER BY number IS NULL, number, id",
+            values,
         )
-        records = []
-        for row in self._execute(statement):
-            values = dict(zip(columns + fields, row, strict=True))
-            document = {name: json.loads(values[name]) for name in ("design", *JSON_FIELDS)}
-            evaluation = Evaluation(status=values["status"], reason=values["reason"], **document)
-            grid = tuple(json.loads(values["grid"]))
-            cached, wall = bool(values["cached"]), values["wall_seconds"] or 0.0
-            worker = values["worker"] or ""
-            place = (values["number"], values["generation"], grid, values["trajectory"])
-            records.append(Record(*place, evaluation, cached, worker, wall))
-        return records
+        while part := rows.fetchmany(DECODED):
+            texts = (",".join(row[len(columns) :]) for row in part)
+            decoded = json.loads(f"[{','.join(f'[{text}]' for text in texts)}]")  # at once: rows share their keys
+            for row, (grid, *fields) in zip(part, decoded, strict=True):
+                number, generation, trajectory, cached, worker, wall, status, reason = row[: len(columns)]
+                document = dict(zip(documents[1:], fields, strict=True))
+                evaluation = Evaluation(status=status, reason=reason, **document)
+                place = (number, generation, tuple(grid), trajectory)
+                yield Record(*place, evaluation, bool(cached), worker or "", wall or 0.0)
 
     def asked(self) -> list[Grid]:
         """The designs that the search has asked for, finished or not, in its order."""

@@ -19,9 +19,7 @@ def table(run: Run) -> list[dict[str, Any]]:
 
     All rows have the same keys. Vectors and matrices are spread over `name.0`, `name.1`, …; what a row lacks is None.
     """
-    rows = [_flat(record) for record in run.records]
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    return [{name: row.get(name) for name in names} for row in rows]
+    return list(_rows(run, _names(run)))
 
 
 def export(run: Run, path: str | Path) -> Path:
@@ -30,12 +28,12 @@ def export(run: Run, path: str | Path) -> Path:
     CSV floats are written so that they read back exactly. Raises: StoreError if it cannot be written.
     """
     path = Path(path)
-    writers: dict[str, Callable[[list[dict[str, Any]], Path], None]] = {".csv": _write_csv, ".parquet": _write_parquet}
+    writers: dict[str, Callable[[Run, Path], None]] = {".csv": _write_csv, ".parquet": _write_parquet}
     if path.suffix not in writers:
         raise StoreError(f"{path}: a table is written as .csv or .parquet")
     try:
         with replacing(path) as beside:
-            writers[path.suffix](table(run), beside)
+            writers[path.suffix](run, beside)
     except OSError as error:
         raise StoreError(f"{path}: cannot be written: {error.strerror or error}") from error
     return path
@@ -63,21 +61,37 @@ def _leaves(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield name, value
 
 
-def _write_csv(rows: list[dict[str, Any]], path: Path) -> None:
+def _names(run: Run) -> list[str]:
+    """Names of all columns, in the order of their first appearance."""
+    return list(dict.fromkeys(name for record in run.records for name in _flat(record)))
+
+
+def _rows(run: Run, names: list[str]) -> Iterator[dict[str, Any]]:
+    """The rows one by one: all of them at once take several times the memory of the run."""
+    for record in run.records:
+        row = _flat(record)
+        yield {name: row.get(name) for name in names}
+
+
+def _write_csv(run: Run, path: Path) -> None:
+    names = _names(run)
     with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]) if rows else [])
+        writer = csv.DictWriter(file, names)
         writer.writeheader()
-        writer.writerows(rows)
+        writer.writerows(_rows(run, names))
 
 
-def _write_parquet(rows: list[dict[str, Any]], path: Path) -> None:
+def _write_parquet(run: Run, path: Path) -> None:
     try:
         import pyarrow
         from pyarrow import parquet
     except ImportError as error:
         raise StoreError("Parquet needs the package pyarrow: pip install 'codesign[analysis]'") from error
-    columns = {name: _column([row[name] for row in rows]) for name in rows[0]} if rows else {}
-    parquet.write_table(pyarrow.table(columns), path)
+    columns: dict[str, list[Any]] = {name: [] for name in _names(run)}
+    for row in _rows(run, list(columns)):
+        for name, value in row.items():
+            columns[name].append(value)
+    parquet.write_table(pyarrow.table({name: _column(values) for name, values in columns.items()}), path)
 
 
 def _column(values: list[Any]) -> list[Any]:
