@@ -95,8 +95,13 @@ void Plant::acceleration(const RobotState& state, const RobotTerms& terms, Joint
   joint_space.acceleration(inputs.torque, force_, nu_dot_);
 }
 
-bool Plant::by_articulated_bodies(const RobotState& state, const PlantInputs& inputs) {
-  bodies_->move(state.base.R, state.joints, state.velocity);
+bool Plant::by_articulated_bodies(const RobotState& state, const PlantInputs& inputs,
+                                  const PairedBodies* moved) {
+  if (moved) {
+    bodies_->move_with(*moved);
+  } else {
+    bodies_->move(state.base.R, state.joints, state.velocity);
+  }
   thrust_ = inputs.thrust.cwiseProduct(thrust_scale_);
   push_jets(jets_, thrust_, *bodies_);
   bodies_->push(0, inputs.base_force, inputs.base_moment);
@@ -109,8 +114,9 @@ bool Plant::by_articulated_bodies(const RobotState& state, const PlantInputs& in
   return bodies_->accelerate(torque_, nu_dot_);
 }
 
-bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs) {
-  if (bodies_) return by_articulated_bodies(state, inputs);
+bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs,
+                         const PairedBodies* moved) {
+  if (bodies_) return by_articulated_bodies(state, inputs, moved);
   update_motion_terms(model_, state, terms_);
   if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return false;
   acceleration(state, terms_, joint_space_, inputs);
@@ -131,9 +137,10 @@ bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const Plan
   return true;
 }
 
-bool Plant::advance(const PlantInputs& inputs, RobotState& state) {
+bool Plant::advance(const PlantInputs& inputs, RobotState& state, const PairedBodies* moved) {
   for (int i = 0; i < substeps_; ++i) {
-    if (!acceleration(state, inputs) || !substep(inputs, state)) return false;
+    if (!acceleration(state, inputs, i == 0 ? moved : nullptr) || !substep(inputs, state))
+      return false;
   }
   burn();
   return true;

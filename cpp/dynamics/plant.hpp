@@ -32,14 +32,16 @@ class Plant {
   bool advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                RobotState& state);
 
-  // The same without terms.
-  bool advance(const PlantInputs& inputs, RobotState& state);
+  // The same without terms. moved: the undisturbed robot moved to `state`, if it is there already.
+  bool advance(const PlantInputs& inputs, RobotState& state, const PairedBodies* moved = nullptr);
 
   double fuel_left() const { return fuel_; }  // [kg]; negative: more was burnt than there was
 
  private:
-  bool acceleration(const RobotState& state, const PlantInputs& inputs);
-  bool by_articulated_bodies(const RobotState& state, const PlantInputs& inputs);
+  bool acceleration(const RobotState& state, const PlantInputs& inputs,
+                    const PairedBodies* moved = nullptr);
+  bool by_articulated_bodies(const RobotState& state, const PlantInputs& inputs,
+                             const PairedBodies* moved);
   void acceleration(const RobotState& state, const RobotTerms& terms, JointSpace& joint_space,
                     const PlantInputs& inputs);
   bool substep(const PlantInputs& inputs, RobotState& state);

@@ -150,7 +150,7 @@ bool Flight::move(bool held) {
     own_plant_(inputs_, torque_period_, state_);
     return true;
   }
-  return held ? plant_.advance(inputs_, state_)
+  return held ? plant_.advance(inputs_, state_, &*bodies_)
               : plant_.advance(terms_, joint_space_, inputs_, state_);
 }
 

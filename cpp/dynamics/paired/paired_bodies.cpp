@@ -155,6 +155,15 @@ void PairedBodies::move(const Matrix3d& world_R_base,
   }
 }
 
+void PairedBodies::move_with(const PairedBodies& other) {
+  assert(rows_.size() == other.rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    rows_[i].motion = other.rows_[i].motion;
+    rows_[i].offset = other.rows_[i].offset;
+    start_row(rows_[i]);
+  }
+}
+
 CODESIGN_BOTH_WIDTHS
 void PairedBodies::move_row(Row& row, const double* joints, const double* rates) {
   const Motion& first = rows_[static_cast<std::size_t>(row.parent[0].row)].motion;

@@ -26,6 +26,9 @@ class PairedBodies {
   void move(const Eigen::Matrix3d& world_R_base, const Eigen::Ref<const Eigen::VectorXd>& joints,
             const Eigen::Ref<const Eigen::VectorXd>& nu);
 
+  // The same at the state to which another moved last: of the same tree, with other inertias.
+  void move_with(const PairedBodies& other);
+
   // World axes, origins from the base's origin.
   Eigen::Matrix3d rotation(int body) const;
   Eigen::Vector3d origin(int body) const;

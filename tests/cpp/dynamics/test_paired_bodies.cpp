@@ -40,6 +40,20 @@ TEST(PairedBodies, SolveTheEquationsOfMotion) {
   }
 }
 
+TEST(PairedBodies, MoveWithAnotherOfOtherMassesAsAlone) {
+  for (const Model& model : floating_trees()) {
+    const State state = random_state(model, 6);
+    Model heavier = model;
+    for (Body& body : heavier.bodies) body.inertia.mass *= 1.1;
+    const Eigen::VectorXd tau = random_vector(model.joint_count(), 7, 10.0);
+    PairedBodies moved(model, {}), alone(heavier, {}), together(heavier, {});
+    moved.move(state.base.R, state.s, state.nu);
+    alone.move(state.base.R, state.s, state.nu);
+    together.move_with(moved);
+    EXPECT_EQ(accelerated(together, state, tau), accelerated(alone, state, tau));
+  }
+}
+
 TEST(PairedBodies, ForcesOnBodiesActThroughTheirJacobians) {
   for (const Model& model : floating_trees()) {
     const State state = random_state(model, 5);

@@ -1,14 +1,17 @@
 """The studies of the iRonCub: as published, flown as a robot would fly, with loads and materials, with flown loads."""
 
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from codesign import _core, load_study
 from codesign import dynamics as dyn
-from codesign import load_study
 from codesign.chain.chain import stress_settings
 from codesign.chain.flight import find_trajectory, flight_seeds, flight_settings, joint_names
+from codesign.parts.load_case import part_case
+from codesign.studies.ironcub.bracket import COUNTERBORE_RADIUS, SEAT_HOLES
 from codesign.study.loading import STUDIES
 
 DESIGN = (4, 90, 98, 122)
@@ -106,3 +109,18 @@ def test_the_study_of_flown_loads_is_the_default_one_and_a_case_more():
         assert more.cases[:-1] == part.cases
         assert (more.cases[-1].name, more.masses) == ("flown", part.masses)
         assert [case.safety_factor_min for case in more.cases] == [10.0, 10.0, 1.0, 2.0, 2.0, 2.0, 10.0]
+
+
+def test_the_seat_of_the_default_studys_bracket_decides_and_is_analyzed():
+    """A turbine's thrust bends the slab, most at the counterbores; without: 21, at the crease."""
+    study = load_study()
+    design = study.space.design([*DESIGN, "ergal", "ti-6al-4v"])
+    bracket = study.build_parts(design)["jetpack_bracket"]
+    settings = stress_settings(study.configured(design), bracket.name)
+    axis = [case for case in settings.cases if case.name == "axis"]
+    searched = _core.analyze_part(part_case(bracket, replace(settings, cases=axis, masses=()))).result
+    assert searched.safety_factor == pytest.approx(15.6, rel=0.04)  # full geometry, fine mesh
+    across = np.asarray(searched.peak_position) - bracket.seat_center
+    x, y, z = across @ bracket.slab_direction, across[1], across @ bracket.slab_normal
+    to_axis = min(np.hypot(1e3 * x - hole[0], 1e3 * abs(y) - hole[1]) for hole in SEAT_HOLES)
+    assert (to_axis, 1e3 * z) == (pytest.approx(COUNTERBORE_RADIUS, abs=0.3), pytest.approx(bracket.thickness, abs=0.5))

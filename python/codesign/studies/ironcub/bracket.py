@@ -45,6 +45,8 @@ class JetpackBracket(Part):
     """Bracket with its slab bent by `angle` and the turbine seat at `distance` from the upper crease.
 
     thickness: of the tilted slab; 15, or 14.9994 as in the published parts (`as_published`).
+    seat_analyzed: whether the solid that is analyzed in a search keeps the seat's pocket and holes. The counterbores'
+    edges carry the peak where a turbine's thrust bends the slab; a load spread over the seat does not reach them.
     """
 
     load_variants = ("uniform", "thrust_line")
@@ -56,6 +58,7 @@ class JetpackBracket(Part):
     name: str = "jetpack_bracket"
     density: float = 2800.0  # aluminium 7075, as in the published masses
     thickness: float = 15.0
+    seat_analyzed: bool = False
 
     @classmethod
     def as_published(cls, angle: float, distance: float) -> JetpackBracket:
@@ -104,16 +107,21 @@ class JetpackBracket(Part):
     def fem_shape(self, geometry: str = "simplified", support: str = "published", half: bool = True) -> Shape:
         """The part, or its half y >= 0 with the face `symmetry`, as it is analyzed.
 
-        geometry: "full"; "simplified" without pocket, holes and dowel hole, where `seat` is the slab's whole lower face
-        and the load acts on the disc `seat_radius` about `seat_center`. support: "published" names both base faces up
-        to the creases `mount`; "bolted" names the contact with the jetpack `pad` and the screws' `screw_seat` instead.
+        geometry: "full"; "simplified" without screw and dowel holes and, unless `seat_analyzed`, without the seat's
+        pocket and holes: then `seat` is the slab's whole lower face and the load acts on the disc `seat_radius` about
+        `seat_center`. support: "published" names both base faces up to the creases `mount`; "bolted" names the contact
+        with the jetpack `pad` and the screws' `screw_seat` instead.
         """
         if geometry not in ("full", "simplified") or support not in ("published", "bolted"):
             raise ValueError(f"geometry = {geometry!r}, support = {support!r}: no such variant")
         return self._build(
-            seat=geometry == "full", screws=geometry == "full" or support == "bolted", dowel=geometry == "full",
+            seat=self._has_seat(geometry), screws=geometry == "full" or support == "bolted", dowel=geometry == "full",
             bolted=support == "bolted", half=half,
         )  # fmt: skip
+
+    def _has_seat(self, geometry: str) -> bool:
+        """Whether a solid that is analyzed has the seat's pocket and holes."""
+        return geometry == "full" or self.seat_analyzed
 
     def _build(
         self, seat: bool = True, screws: bool = True, dowel: bool = True, bolted: bool = False, half: bool = False
@@ -224,8 +232,8 @@ class JetpackBracket(Part):
         supports = list(settings.supports) if settings.support == "published" else ["pad", "screw_seat"]
         surface = self.fem_surface(settings.geometry, settings.segments, support=settings.support, half=half)
         center = self.turbine_axis if settings.load == "thrust_line" else self.seat_center
-        pocketed = settings.geometry == "full"
-        disc = None if pocketed else fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
+        slab = fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
+        disc = None if self._has_seat(settings.geometry) else slab
         share, aside = (0.5, self._half_floor_aside) if half else (1.0, np.zeros(3))
 
         def at_point(load: fem.AffineTraction) -> fem.Load:
@@ -267,7 +275,19 @@ class JetpackBracket(Part):
             )
             for crease in (self.lower_crease, self.upper_crease)
         ]
+        if self.seat_analyzed:
+            sources += self._counterbore_sources(fine, half)
         return fem.SizeField(base * MILLIMETER, sources)
+
+    def _counterbore_sources(self, fine: bool, half: bool) -> list[fem.SizeSource]:
+        """Fine around the edges of the counterbores on the slab's upper face."""
+        size, growth = (0.5, 0.35) if fine else (0.7, 0.5)
+        radius = COUNTERBORE_RADIUS + 0.5
+        centers = [self._seat_frame.point(x, y, self.thickness) for x, y in SEAT_HOLES if y > 0.0 or not half]
+        return [
+            fem.SizeSource(np.array([center]) * MILLIMETER, size * MILLIMETER, growth, radius * MILLIMETER)
+            for center in centers
+        ]
 
 
 def _symmetric(load: PartLoad) -> bool:
