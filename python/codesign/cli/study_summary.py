@@ -13,6 +13,8 @@ from rich.table import Table
 from codesign.chain.judge import FLIGHT_MISSED, LIMITS, Limit, limits
 from codesign.cli.console import out, shown
 from codesign.problem.numbers import known_number
+from codesign.problem.quantities import MINUS
+from codesign.study.checking.cases import idle_cases
 from codesign.study.checking.numbers import constant_numbers
 from codesign.study.checking.problems import Problem
 from codesign.study.parts import bodies_given_twice
@@ -49,6 +51,7 @@ def study_summary(study: Study) -> dict[str, Any]:
 def notes(study: Study) -> Iterator[Problem]:
     """What is no mistake, but may not be what was meant."""
     yield from constant_numbers(study.config)
+    yield from idle_cases(study.config)
     yield from bodies_given_twice(study.config, study.base_robot)
 
 
@@ -114,10 +117,16 @@ def print_study(summary: dict[str, Any]) -> None:
         table.add_row(variable["name"], variable["values"], str(variable["levels"]))
     out.print(table)
     out.print(f"{summary['designs']:,} designs", highlight=False)
-    out.print(f"minimized: {', '.join(summary['objectives'])}")
+    objectives = summary["objectives"]
+    for word, names in (
+        ("minimized", [name for name in objectives if not name.startswith(MINUS)]),
+        ("maximized", [name.removeprefix(MINUS) for name in objectives if name.startswith(MINUS)]),
+    ):
+        if names:
+            out.print(f"{word}: {', '.join(names)}", highlight=False, markup=False, soft_wrap=True)
     out.print("limited:")
     for limit in summary["limits"]:
-        out.print(f"  {_limit(limit)}", highlight=False, markup=False)
+        out.print(f"  {_limit(limit)}", highlight=False, markup=False, soft_wrap=True)
     print_control(summary["control"])
     for note in summary["notes"]:
         out.print(f"note: {note}", highlight=False, markup=False, soft_wrap=True)
@@ -131,13 +140,13 @@ def _print_costs(summary: dict[str, Any]) -> None:
     for one in found["designs"]:
         values = ", ".join(f"{name} = {shown(value)}" for name, value in one["design"].items())
         told = f"{one['cpu_seconds']:.2f} s of processor time: {values} ({one['status']})"
-        out.print(told + (f"; {one['reason']}" if one["reason"] else ""), highlight=False, markup=False)
+        out.print(told + (f"; {one['reason']}" if one["reason"] else ""), highlight=False, markup=False, soft_wrap=True)
     times = sorted(one["cpu_seconds"] for one in found["designs"])
     count = summary["population"] * summary["generations"]
-    each = count / summary["workers"] / 3600.0
-    hours = f"{each * times[0]:.2g} to {each * times[-1]:.2g} h"
-    searched = f"{count:,} evaluations of the search on {summary['workers']} workers, a core each: {hours}"
-    out.print(searched, highlight=False)
+    least, most = (count / summary["workers"] * seconds for seconds in (times[0], times[-1]))
+    unit, length = ("h", 3600.0) if most >= 3600.0 else ("min", 60.0)
+    searched = f"{count:,} evaluations of the search on {summary['workers']} workers, a core each"
+    out.print(f"{searched}: {least / length:.2g} to {most / length:.2g} {unit}", highlight=False, soft_wrap=True)
     for key, value in found["constant"].items():
         out.print(f"note: {key} was {shown(value)} in all of them: does it decide anything?", highlight=False)
 

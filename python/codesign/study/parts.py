@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -19,9 +18,10 @@ from codesign.robot.inertial import Inertial
 from codesign.study.checking.problems import Problem, unknown
 from codesign.study.choices import numbers_of
 from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
+from codesign.transforms import Matrix
 from codesign.units import MILLIMETER
 
-SAME_BODY = 1e-6  # relative difference of two descriptions of a body
+SAME_BODY, SAME_PLACE = 1e-3, 1e-4  # of two descriptions of a body: relative difference of masses, distance [m]
 
 
 def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], design: Mapping[str, DesignValue]) -> Part:
@@ -143,39 +143,43 @@ def _loads_key(part: PartConfig, case: LoadCaseConfig) -> str:
 
 
 def bodies_given_twice(config: StudyConfig, robot: RobotDescription) -> Iterator[Problem]:
-    """Bodies that hang on a part and have other numbers in the robot's file than in the study's."""
+    """Bodies that hang on a part and weigh otherwise in the robot's file than in the study's, fixed links as one."""
     for part in config.parts:
         carried = carried_bodies(part)
         told = set()
         for place in part.placements:
             for joint, attachment in place.joints.items():
                 child = robot.joint(joint).child
-                body, theirs = carried.get(attachment.interface), robot.inertial(child)
-                if body is None or theirs is None or attachment.interface in told:
+                body, (mass, moment) = carried.get(attachment.interface), _fixed_mass(robot, child)
+                if body is None or mass == 0.0 or attachment.interface in told:
                     continue
-                if reason := _other_body(place_carried(place, attachment, body), theirs):
-                    told.add(attachment.interface)
-                    yield (
-                        f"parts.{part.name}.masses",
-                        f"what hangs on {attachment.interface!r} has another {reason.format(child)}; if they are one "
-                        "body, give the link no mass: it takes these numbers then",
-                    )
+                mine = place_carried(place, attachment, body)
+                apart = float(np.linalg.norm(mine.com - moment / mass))
+                if abs(mine.mass - mass) > SAME_BODY * mass:
+                    differs = f"mass than the robot's link {child!r} ({mine.mass:g} and {mass:g} kg)"
+                elif apart > SAME_PLACE and place.mirror is None:  # axes of mirrored links are as their author likes
+                    differs = f"center of mass than the robot's link {child!r} ({1e3 * apart:.3g} mm apart)"
+                else:
+                    continue
+                told.add(attachment.interface)
+                yield (
+                    f"parts.{part.name}.masses",
+                    f"what hangs on {attachment.interface!r} has another {differs}; if they are one body, give the "
+                    "link no mass: it takes these numbers then",
+                )
 
 
-def _other_body(mine: Inertial, theirs: Inertial) -> str | None:
-    """What differs between a body of the study and one of the robot's file, whose link is to be filled in."""
-    for name, here, there in (
-        ("mass", mine.mass, theirs.mass),
-        ("center of mass", mine.com, theirs.com),
-        ("inertia", mine.inertia, theirs.inertia),
-    ):
-        if not np.allclose(here, there, rtol=SAME_BODY, atol=SAME_BODY * float(np.abs(there).max())):
-            return f"{name} than the robot's link {{!r}} ({_shown(here)} and {_shown(there)})"
-    return None
-
-
-def _shown(value: Any) -> str:
-    return f"{value:g}" if np.ndim(value) == 0 else str(np.asarray(value).tolist())
+def _fixed_mass(robot: RobotDescription, link: str) -> tuple[float, Matrix]:
+    """Mass [kg] of a link with all that is fixed to it, and its moment (3,) [kg m] in the link's axes."""
+    own = robot.inertial(link)
+    mass, moment = (0.0, np.zeros(3)) if own is None else (own.mass, own.mass * own.com)
+    for name in robot.joint_names:
+        joint = robot.joint(name)
+        if joint.parent == link and joint.type == "fixed":
+            below, there = _fixed_mass(robot, joint.child)
+            T = robot.joint_origin(name)
+            mass, moment = mass + below, moment + T[:3, :3] @ there + below * T[:3, 3]
+    return mass, moment
 
 
 def _place_problems(part: PartConfig, robot: RobotDescription, built: Part) -> Iterator[Problem]:

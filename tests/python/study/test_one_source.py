@@ -61,7 +61,7 @@ def test_the_same_motor_with_two_masses_is_noted_with_both(hexa, capsys):
     edited(hexa, "robot.toml", 'name = "rotor_1"', heavier)
     assert check(str(hexa)) == 0
     told = "note: parts.arm.masses: what hangs on 'motor' has another mass than the robot's link 'rotor_1'"
-    assert f"{told} (0.0971 and 0.14)" in capsys.readouterr().out
+    assert f"{told} (0.0971 and 0.14 kg)" in capsys.readouterr().out
     edited(hexa, "robot.toml", "mass = 0.14", "mass = 0.0971")
     assert check(str(hexa)) == 0
     assert "note:" not in capsys.readouterr().out

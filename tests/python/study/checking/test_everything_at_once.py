@@ -166,14 +166,39 @@ def test_limits_name_where_they_come_from(plate, capsys):
 def test_numbers_that_never_change_are_noted(capsys, tmp_path):
     new_study(tmp_path / "hexa", "hexarotor")
     file = tmp_path / "hexa" / "study.toml"
-    file.write_text(
-        file.read_text().replace(
-            "[validation]", '[constraints.limits]\n"flight.max_torque" = { max = 50.0 }\n[validation]'
-        )
-    )
+    limits = "[constraints.limits]\n"
+    file.write_text(file.read_text().replace(limits, f'{limits}"flight.max_torque" = {{ max = 50.0 }}\n'))
     assert check(str(file)) == 0
     told = capsys.readouterr().out
     assert "note: constraints.limits: 'flight.max_torque' is 0 for every design: the robot moves no joints" in told
+
+
+@pytest.mark.parametrize(
+    ("thrust", "landing", "idle"),
+    [
+        ("force_n = [0.0, 12.0, 0.0] }], safety_factor_min = 4.0", "force_n = [0.0, 60.0, 0.0] }]", "thrust"),
+        ("force_n = [0.0, 12.0, 0.0] }], safety_factor_min = 9.0", "force_n = [0.0, 60.0, 0.0] }]", "landing"),
+        ("force_n = [0.0, 12.0, 0.0] }]", "force_n = [9.0, 60.0, 0.0] }]", None),
+        ("force_n = [0.0, 12.0, 0.0] }]", "force_n = [0.0, -60.0, 0.0] }]", None),
+        ("force_n = [0.0, 12.0, 0.0] }]", "bearing_n = [0.0, 60.0, 0.0] }]", None),
+    ],
+)
+def test_a_load_case_that_another_outdoes_is_noted(plate, thrust, landing, idle, capsys):
+    cases = "".join(
+        f'{{ name = "{name}", loads = [{{ face = "bore", {load} }},'
+        for name, load in (("thrust", thrust), ("landing", landing))
+    )
+    folder = plate(
+        ('loads = [{ face = "bore", bearing_n = [0.0, 100.0, 0.0] }]', f"cases = [{cases}]"),
+        ("[objectives]", "[constraints]\nsafety_factor_min = 1.5\n[objectives]"),
+    )
+    assert check(str(folder)) == 0
+    told = capsys.readouterr().out
+    if idle is None:
+        assert "decides nothing" not in told
+    else:
+        assert f"note: parts.plate.cases[{idle}]: decides nothing" in told
+        assert told.count("decides nothing") == 1
 
 
 def test_time_measures_several_designs_and_names_what_was_the_same(plate, capsys):
