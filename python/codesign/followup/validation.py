@@ -42,7 +42,8 @@ def validate(
         designs: `recommended` (the knee), `best` (of each objective), `front` (all of it), `spread:N` (N designs far
             apart on the front), or a design's number. The original is always flown.
         trajectories: of the study; by default those of its `[validation]` section.
-        seeds: disturbed repetitions of each flight; 0 for none.   disturbance: their size.
+        seeds: disturbed repetitions of each flight; 0 for none.
+        disturbance: their size; by default as in `disturbance_of`.
         workers: parallel evaluations; by default as in the study's [execution].
         progress: called with the flights done and the number of those that the run does not hold yet.
     Raises: StoreError (no run, being written), DesignError (no such design), StudyError (no such trajectory).
@@ -63,7 +64,7 @@ def validate(
     for name in names:
         if name not in study.config.trajectories:
             raise StudyError(f"no trajectory {name!r}; this study has {', '.join(study.trajectories)}")
-    size = disturbance or Disturbance()
+    size = disturbance or disturbance_of(study)
     cases = _cases(names, seeds, size)
     told = None if progress is None else lambda state: progress(state.done, state.total)
     records = revisit(directory, list(cases), list(chosen.values()), study=study, workers=workers, progress=told)
@@ -78,6 +79,18 @@ def validate(
     validation = Validation(tuple(flights), size)
     write_text(directory / FILE, validation.to_json())
     return validation
+
+
+def disturbance_of(study: Any) -> Disturbance:
+    """How far validation strays from the model: as far as the study's own flights, if these do, else a little.
+
+    Of gusts that differ by axis, the largest.
+    """
+    config = study.config
+    own = config.trajectories[config.flown.trajectory].disturbances
+    if not any((*own.gust_deviation_n, own.mass_deviation, own.thrust_deviation)):
+        return Disturbance()
+    return Disturbance(max(own.gust_deviation_n), own.gust_time_s, own.mass_deviation, own.thrust_deviation)
 
 
 def select(run: ReportData, designs: Iterable[str]) -> dict[str, dict[str, DesignValue]]:

@@ -10,7 +10,7 @@ from codesign.chain.flight import disturbed, find_trajectory
 from codesign.chain.fly import fly_robot
 from codesign.chain.study import load_study
 from codesign.errors import DesignError, StoreError, StudyError
-from codesign.followup.validation import select, validate
+from codesign.followup.validation import disturbance_of, select, validate
 from codesign.report.page.validation import strips, validation_tables
 from codesign.report.reading import read_report_data
 from codesign.report.validation import Disturbance, Flight, Validation, load_validation
@@ -125,7 +125,7 @@ def test_validate_flies_chosen_designs_isolated_and_keeps_the_flights(real_run):
     )
     assert result.roles == ("original", "recommended")
     assert [f.seed for f in result.of("original")] == [None, 1, 2]
-    assert all(f.completed for f in result.flights)
+    assert all(f.completed for f in result.flights), [f.reason for f in result.flights]
     assert len({f.objectives["momentum"] for f in result.of("original")}) == 3
     assert load_validation(real_run) == result
     assert np.isfinite(list(result.change("recommended", "momentum").values())).all()
@@ -140,3 +140,8 @@ def test_validate_refuses_unknown_trajectories_and_folders_without_a_run(real_ru
         validate(real_run, ["recommended"], ["loop"], workers=1)
     with pytest.raises(StoreError, match="no run here"):
         validate(tmp_path / "nothing", study=STUDY)
+
+
+def test_validation_strays_as_far_as_the_studys_own_flights():
+    assert disturbance_of(load_study("ironcub_paper")) == Disturbance()
+    assert disturbance_of(load_study("ironcub")) == Disturbance(gust=5.0, gust_time=1.0, mass=0.01, thrust=0.01)
