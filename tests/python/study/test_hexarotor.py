@@ -72,10 +72,17 @@ def test_sideways_flight_needs_tilt(study):
 def test_an_arm_with_its_motor_swings_as_rayleigh_says(study):
     design = {"propeller": "8in", "tilt": 15, "tube": "10x2"}
     arm = study.evaluate(design).parts["arm"]
-    stiffness = 60.0 / arm["cases"]["landing"]["max_displacement"]
+    stiffness = 250.0 / arm["cases"]["landing"]["max_displacement"]
     moving = CHOICES["8in"]["parts.arm.masses.0.mass_kg"] + 33.0 / 140.0 * arm["mass"]  # and of a cantilever's own
     assert arm["first_frequency"] == pytest.approx(math.sqrt(stiffness / moving) / (2.0 * math.pi), rel=0.05)
     assert arm["tolerance_reached"]
+
+
+def test_landing_decides_for_long_arms_on_tubes_that_are_stiff_enough(study):
+    """A twentieth more than the limit of the frequency, and too weak."""
+    evaluation = study.evaluate({"propeller": "12in", "tilt": 25, "tube": "18x2"})
+    assert evaluation.status == "infeasible"
+    assert [key for key, margin in evaluation.margins.items() if margin < 0.0] == ["safety_factor"]
 
 
 def test_propellers_of_the_study_are_those_of_the_relation():
