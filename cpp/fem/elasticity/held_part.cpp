@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "fem/stress/corner_stress.hpp"
 #include "fem/stress/recovery.hpp"
 
 namespace codesign::fem {
@@ -40,6 +41,8 @@ void read_stress(const HeldPart& part, const std::vector<int>& loaded, const Eig
                  StaticResult& r) {
   const PointStresses points = point_stresses(part.mesh, part.material, u);
   r.stress = recover_stress(part.mesh, points);
+  const CornerStress corners = corner_stress(part.mesh, part.material, u);
+  r.stress(corners.nodes, Eigen::all) = corners.stress;
   r.von_mises = von_mises(r.stress);
   const ExclusionZone zone = exclusion_zone(part, loaded);
   const PeakStress peak = read_peak(part, points, zone, r);

@@ -6,6 +6,7 @@
 
 #include "fem/elasticity/held_part.hpp"
 #include "fem/elasticity/stiffness.hpp"
+#include "fem/stress/corner_stress.hpp"
 #include "fem/stress/stress.hpp"
 
 namespace codesign::fem {
@@ -18,7 +19,12 @@ StressFields recovered(const HeldPart& part, const Eigen::MatrixXd& displacement
     points.middleCols<6>(6 * u) =
         point_stresses(part.mesh, part.material, displacement.col(u)).stress;
   }
-  return recover_fields(part.mesh, points);
+  StressFields nodal = recover_fields(part.mesh, points);
+  for (Eigen::Index u = 0; u < displacement.cols(); ++u) {
+    const CornerStress corners = corner_stress(part.mesh, part.material, displacement.col(u));
+    nodal(corners.nodes, Eigen::seqN(6 * u, 6)) = corners.stress;
+  }
+  return nodal;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "fem/mesh/incidence.hpp"
 #include "fem/mesh/tet10.hpp"
+#include "fem/stress/body_edges.hpp"
 #include "interrupt.hpp"
 
 namespace codesign::fem {
@@ -126,11 +127,49 @@ class PatchFinder {
               rim_ = 0;  // elements that touch the node; whose neighbors are in the patch
 };
 
+// The quadratic term of each pair of axes in the basis, and the stress component of each.
+constexpr int kQuadratic[3][3] = {{4, 7, 9}, {7, 5, 8}, {9, 8, 6}};
+constexpr int kComponent[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+// The second derivative of a quadratic along two axes over the coefficient of their term.
+double second_derivative(int j, int k) { return j == k ? 2.0 : 1.0; }
+
+// Moves fits to the nearest ones, in the norm of their least squares, with one body force over the
+// whole patch: the derivative of div σ vanishes, nine conditions on the quadratic terms of a field.
+// At edges of the body, where a fit sees one side only, they replace what it does not see.
+template <int Columns>
+void balance(const Eigen::LDLT<Eigen::Matrix<double, 10, 10>>& factor,
+             Coefficients<Columns>& coefficients) {
+  using Conditions = Eigen::Matrix<double, 9, 9>;
+  const Eigen::Matrix<double, 10, 10> inverse =
+      factor.solve(Eigen::Matrix<double, 10, 10>::Identity());
+  Eigen::Matrix<double, 9, 60> rows = Eigen::Matrix<double, 9, 60>::Zero();  // component by basis
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        rows(3 * i + k, 10 * kComponent[i][j] + kQuadratic[j][k]) = second_derivative(j, k);
+      }
+    }
+  }
+  Eigen::Matrix<double, 60, 9> moves;  // of the coefficients by a unit multiplier
+  for (int c = 0; c < 6; ++c) {
+    moves.middleRows<10>(10 * c) = inverse * rows.middleCols<10>(10 * c).transpose();
+  }
+  const Eigen::LDLT<Conditions> conditions(Conditions(rows * moves));
+  for (Eigen::Index field = 0; field < coefficients.cols() / 6; ++field) {
+    Eigen::Matrix<double, 60, 1> all;
+    for (int c = 0; c < 6; ++c) all.segment<10>(10 * c) = coefficients.col(6 * field + c);
+    all -= moves * conditions.solve(rows * all);
+    for (int c = 0; c < 6; ++c) coefficients.col(6 * field + c) = all.segment<10>(10 * c);
+  }
+}
+
 // A quadratic stress around a corner node.
 template <int Columns>
 struct PatchField {
   Eigen::Vector3d origin;
   double radius;
+  bool balanced;  // fits fulfill equilibrium, see balance()
   Coefficients<Columns> coefficients;
   double least_pivot;  // over the sum of the weights
 
@@ -168,6 +207,7 @@ void fit(const std::vector<int>& patch, const Points& x, const Fields<Columns>& 
   normal.diagonal().tail<3>().array() += 0.5 * kRidge * total;  // the same in turned axes
   const Eigen::LDLT<Eigen::Matrix<double, 10, 10>> factor(normal);
   field.coefficients = factor.solve(right);
+  if (field.balanced) balance<Columns>(factor, field.coefficients);
   field.least_pivot = factor.vectorD().minCoeff() / total;
 }
 
@@ -184,10 +224,12 @@ double patch_radius(const TetMesh& mesh, const std::vector<int>& patch,
 
 // The field around a corner, on a patch that determines it.
 template <int Columns>
-PatchField<Columns> fit_around(const TetMesh& mesh, int corner, PatchFinder& finder,
-                               const Points& x, const Fields<Columns>& stress) {
+PatchField<Columns> fit_around(const TetMesh& mesh, int corner, BodyPlace place,
+                               PatchFinder& finder, const Points& x,
+                               const Fields<Columns>& stress) {
   const std::vector<int>& patch = finder.around(corner);
-  PatchField<Columns> field{mesh.nodes.row(corner).transpose(), 0.0, {}, 0.0};
+  const bool balanced = place == BodyPlace::edge;
+  PatchField<Columns> field{mesh.nodes.row(corner).transpose(), 0.0, balanced, {}, 0.0};
   do {
     field.radius = patch_radius(mesh, patch, field.origin);
     fit<Columns>(patch, x, stress, kExponent, field);
@@ -198,6 +240,7 @@ PatchField<Columns> fit_around(const TetMesh& mesh, int corner, PatchFinder& fin
 template <int Columns>
 Fields<Columns> recover(const TetMesh& mesh, const Fields<Columns>& stress) {
   const Points x = stress_points(mesh);
+  const std::vector<BodyPlace> places = body_places(mesh);
   PatchFinder finder(mesh);
   const int nodes = static_cast<int>(mesh.nodes.rows());
   Fields<Columns> sum = Fields<Columns>::Zero(nodes, stress.cols());
@@ -205,7 +248,8 @@ Fields<Columns> recover(const TetMesh& mesh, const Fields<Columns>& stress) {
   for (int v = 0; v < nodes; ++v) {
     check_interrupt();
     if (!finder.is_corner(v)) continue;
-    const PatchField<Columns> field = fit_around<Columns>(mesh, v, finder, x, stress);
+    const PatchField<Columns> field =
+        fit_around<Columns>(mesh, v, places[at(v)], finder, x, stress);
     sum.row(v) += field.coefficients.row(0);
     ++count[at(v)];
     for (std::size_t i = 0; i < finder.core(); ++i) {
@@ -239,12 +283,13 @@ StressFields recover_fields(const TetMesh& mesh, const StressFields& points) {
 double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,
                        const Eigen::Vector2d& reference) {
   const Points x = stress_points(mesh);
+  const std::vector<BodyPlace> places = body_places(mesh);
   PatchFinder finder(mesh);
   const FaceNodes nodes = face_nodes(mesh, triangle);
   Eigen::Matrix<double, 6, 6> smooth = Eigen::Matrix<double, 6, 6>::Zero(), sharp = smooth;
   for (int k = 0; k < 3; ++k) {
     const int corner = mesh.boundary(triangle, k);
-    PatchField<6> field = fit_around<6>(mesh, corner, finder, x, points.stress);
+    PatchField<6> field = fit_around<6>(mesh, corner, places[at(corner)], finder, x, points.stress);
     for (auto& [stress, exponent] :
          {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
       fit<6>(finder.patch(), x, points.stress, exponent, field);
@@ -261,10 +306,12 @@ double recovery_spread(const TetMesh& mesh, const PointStresses& points, int tri
 double recovery_spread_inside(const TetMesh& mesh, const PointStresses& points, int element,
                               const Eigen::Vector3d& position) {
   const Points x = stress_points(mesh);
+  const std::vector<BodyPlace> places = body_places(mesh);
   PatchFinder finder(mesh);
   Voigt smooth = Voigt::Zero(), sharp = smooth;
   for (int k = 0; k < 4; ++k) {
-    PatchField<6> field = fit_around<6>(mesh, mesh.tets(element, k), finder, x, points.stress);
+    const int corner = mesh.tets(element, k);
+    PatchField<6> field = fit_around<6>(mesh, corner, places[at(corner)], finder, x, points.stress);
     for (auto& [stress, exponent] :
          {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
       fit<6>(finder.patch(), x, points.stress, exponent, field);

@@ -14,8 +14,12 @@ namespace codesign::fem {
 // and, averaged over the two ends, at the mid-edge nodes. With the ten terms p(r) = (1, x, y, z,
 // x², …, zx) of the place r over the patch radius, from the corner: σ(r) = Aᵀ p(r), A minimizing
 // Σ_i w_i |Aᵀ p(r_i) − σ_i|², w = (|r|² + 0.01)^(−3/2).
-// Source: Zienkiewicz and Zhu 1992; the weights follow moving least squares. Measured on notches
-// and on a thick cylinder (docs/fem.md): third order where averaged element stresses have second.
+// At edges of the body (body_edges.hpp) A also has one body force over the whole patch, whatever it
+// is, ∂ₖ(div σ) = 0: that replaces what a patch on one side does not see. Corners:
+// corner_stress.hpp. Source: Zienkiewicz and Zhu 1992; the weights follow moving least squares;
+// equilibrium as a condition on the fit as in Ródenas et al. 2007 (SPR-C), here for any load.
+// Measured on notches and on a thick cylinder (docs/fem.md): third order where averaged element
+// stresses have second.
 Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);
 
 // The same of any number of fields side by side, six columns each: at the points of PointStresses,
