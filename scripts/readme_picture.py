@@ -20,7 +20,7 @@ from codesign.chain.study import Study, load_study
 from codesign.storage.runs import load_run
 
 OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "hexarotor.png"
-TUBE_COLORS = {"10x2": "#1f77b4", "12x2": "#9467bd", "16x2": "#ff7f0e", "20x2": "#2ca02c"}
+TUBE_COLORS = {"14x2": "#9467bd", "16x2": "#ff7f0e", "18x2": "#1f77b4", "20x2": "#2ca02c"}
 
 
 def flown(study: Study, design: dict[str, float | str]) -> dyn.FlightLog:
@@ -31,13 +31,13 @@ def flown(study: Study, design: dict[str, float | str]) -> dyn.FlightLog:
 
 
 def draw_front(axes: plt.Axes, folder: str) -> None:
-    """Tracking error over power of a run's feasible designs; the best compromises, in mass too, filled."""
+    """Mass over power of a run's feasible designs; the best compromises, in stiffness too, filled."""
     run = load_run(folder)
     best = [record.evaluation.design for record in run.front]
     for tube, color in TUBE_COLORS.items():
         for filled in (False, True):
             points = [
-                (evaluation.objectives["power:power_in_watts"], 1e3 * evaluation.objectives["tracking"])
+                (evaluation.objectives["propeller:power_in_watts"], evaluation.objectives["propeller:mass_in_kg"])
                 for evaluation in run.evaluations
                 if evaluation.status == "feasible"
                 and evaluation.design["tube"] == tube
@@ -47,8 +47,7 @@ def draw_front(axes: plt.Axes, folder: str) -> None:
                 hollow = {"facecolors": "none", "edgecolors": color}
                 style = {"color": color, "label": f"tube {tube}"} if filled else hollow
                 axes.scatter(*np.array(points).T, s=26 if filled else 14, **style)
-    axes.set(xlabel="power [W]", ylabel="tracking error [mm]", title="designs, the best ones filled")
-    axes.set_yscale("log")
+    axes.set(xlabel="power [W]", ylabel="mass of arms and rotors [kg]", title="designs, the best ones filled")
     axes.legend(frameon=False)
 
 

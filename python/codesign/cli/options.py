@@ -30,8 +30,13 @@ STUDY_HELP = "A shipped study's name, or the path of a study.toml or of its fold
 StudyOption = Annotated[str, typer.Option("--study", "-s", help=STUDY_HELP, autocompletion=complete_study)]
 StudyArgument = Annotated[str, typer.Argument(help=STUDY_HELP, autocompletion=complete_study)]
 SetOption = Annotated[
-    list[str],
-    typer.Option("--set", metavar="NAME=VALUE", help="A design variable's value.", autocompletion=complete_assignment),
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="A design variable's value; default: the baseline.",
+        autocompletion=complete_assignment,
+    ),
 ]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
 NoCacheOption = Annotated[bool, typer.Option("--no-cache", help="Compute everything again.")]

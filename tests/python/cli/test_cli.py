@@ -106,6 +106,12 @@ def test_evaluate_prints_the_document():
     assert json.loads(again.stdout) == document
 
 
+def test_evaluate_without_a_design_takes_the_baseline():
+    result = codesign("evaluate", "--study", "gimbal_quad", "--json")
+    assert result.returncode == 0, result.stderr
+    assert json.loads(result.stdout)["design"] == {"reach": 200, "height": 30}
+
+
 def test_a_lost_flight_is_exit_code_1():
     result = codesign(
         "evaluate",

@@ -28,22 +28,27 @@ commands = typer.Typer()
 
 @commands.command(epilog=f"Example: `codesign evaluate {EXAMPLE_DESIGN}`")
 def evaluate(
-    set_: SetOption,
+    set_: SetOption = None,
     study: StudyOption = DEFAULT_STUDY,
     trajectory: TrajectoryOption = None,
     confirm: Annotated[bool, typer.Option("--confirm", help="Full parts on fine meshes too (some seconds).")] = False,
     no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
 ) -> int:
-    """One design through the whole chain: parts, stress, robot, flight, objectives; known ones from the cache."""
+    """One design through the whole chain: parts, stress, robot, flight, objectives; known ones from the cache.
+
+    Without --set the study's baseline, or the middle of its grid.
+    """
     from codesign.chain.study import load_study
+    from codesign.cli.study_summary import typical
     from codesign.report.verdict import study_verdict
     from codesign.storage.cache import default_cache_path, open_cache
     from codesign.storage.designs import evaluate_once
 
     loaded = load_study(study)
     with open_cache(None if no_cache else default_cache_path(loaded.name), loaded.identity.program) as cache:
-        evaluation, known = evaluate_once(loaded, parse_design(set_), cache, trajectory)
+        design = parse_design(set_) if set_ else typical(loaded)
+        evaluation, known = evaluate_once(loaded, design, cache, trajectory)
     if known:
         err.print("known from the cache; --no-cache computes it again")
     confirmations = loaded.confirm(evaluation.design) if confirm and evaluation.status != "failed" else {}
