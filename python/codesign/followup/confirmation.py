@@ -23,7 +23,7 @@ from codesign.report.objections import UNSETTLED
 from codesign.report.reading import read_report_data, study_of
 from codesign.search.progress import Progress
 
-PATIENCE, ROOM = 5.0, 2  # times the study's limits of time and memory: finer meshes, several of them
+PATIENCE, ROOM = 5.0, 4  # times the study's limits of time and memory: finer meshes, several of them
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,10 @@ from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.evidence import evidence
 from codesign.report.objections import objections
+from codesign.report.page.document import page_document
 from codesign.report.page.summary import summary
 from codesign.report.reading import read_report_data
-from codesign.report.recommendation import left_out, price, second_opinion, strength, why
+from codesign.report.recommendation import left_out, load_cases, price, second_opinion, strength, why
 from codesign.report.validation import Disturbance, Flight, Validation
 from codesign.report.verdict import run_verdict
 
@@ -174,6 +175,26 @@ def test_strength_names_load_support_and_material(tmp_path, evaluations):
     said = strength(report_data(tmp_path / "run", evaluations))
     for words in ("250\u202fN pressing on face seat", "face mount held", "462\u202fMPa", "at least 10 is asked for"):
         assert words in said
+
+
+def test_every_load_case_is_told_with_its_limit_its_error_and_the_tolerance(tmp_path, evaluations):
+    """On the first screen for the recommended design, on its card for any; the one that decides comes first."""
+    cases = {
+        "thrust": {"safety_factor": 24.3, "peak_stress": 11.4e6, "stress_error": 0.87e6},
+        "landing": {"safety_factor": 14.9, "peak_stress": 56.8e6, "stress_error": 4.4e6},
+    }
+    more = {"load_case": "landing", "cases": cases, "first_frequency": 80.12, "peak_position": [0.0, 0.0, 0.0]}
+    made = [part(e, **more) if e.parts else e for e in evaluations]
+    run = report_data(tmp_path / "run", made)
+    said = load_cases(run)
+    told = "load case landing, which decides: safety factor 14.9 (at least 10), peak stress 56.8 ± 4.4\u202fMPa"
+    assert f"{told} (7.7\u202f%); load case thrust: safety factor 24.3 (at least 10)" in said
+    assert "first natural frequency 80.12\u202fHz; nothing that hangs on the part is counted" in said
+    assert "5\u202f% is asked for ([fem] tolerance)" in said
+    assert said in summary(run).replace("&amp;", "&")
+    assert run.recommended is not None
+    shown = page_document(run)["designs"][run.recommended]["s"]
+    assert all(told in texts[0] for texts in shown)
 
 
 def flights(run: ReportData, changes: list[float]) -> Validation:
