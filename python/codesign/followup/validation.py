@@ -123,9 +123,7 @@ def _positions(run: ReportData, selector: str) -> dict[str, int]:
         raise DesignError(f"{run.directory} has no feasible design to validate")
     if selector in ("recommended", "knee"):
         if run.recommended is None:
-            raise DesignError(
-                f"{run.directory} has no design to recommend: every feasible one overlaps bodies or plumes"
-            )
+            raise DesignError(f"{run.directory} has no design to recommend; its report says why")
         return {"recommended": run.recommended}
     if selector == "best":
         return {f"lowest {o.label.lower()}": run.best[o.key] for o in run.objectives}

@@ -15,9 +15,9 @@ UNSETTLED = (
     "have a stress that is not settled",
     "keep the safety factor by less than its error",
 )  # kinds that a finer mesh may lift
-COMFORT = (
-    2.0  # times its estimated error: a safety factor that keeps its limit even then is settled, whatever the error
-)
+# Times its estimated error: a safety factor that keeps its limit even then is settled, whatever the error.
+COMFORT = 2.0
+TOO_WEAK = "miss the limit of the safety factor on a finer mesh"  # a kind that a finer mesh brings
 Limits = Mapping[str, tuple[str, float]]  # constraint -> (">=" or "<=", bound in SI units)
 
 
@@ -107,7 +107,7 @@ def _strength(
     if factor is not None and least is not None and share is not None:
         if factor < least:
             text = f"a finer mesh gives the {of} a safety factor of {factor:.3g}, below its limit {least:g}"
-            return Objection("miss the limit of the safety factor on a finer mesh", text, True)
+            return Objection(TOO_WEAK, text, True)
         if least > factor / (1.0 + share):
             text = f"the safety factor {factor:.3g} of the {of} keeps its limit {least:g} by less than its error"
             return Objection(UNSETTLED[1], f"{text}, {_percent(share)}", False)

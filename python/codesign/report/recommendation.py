@@ -11,7 +11,7 @@ import numpy as np
 
 from codesign.problem.quantities import words
 from codesign.report.data import ReportData
-from codesign.report.objections import least_factor, singular
+from codesign.report.objections import TOO_WEAK, least_factor, singular
 from codesign.report.strength import strength_words
 from codesign.report.words import EQUAL, combinations, listed, percent, plural
 from codesign.units import MILLIMETER
@@ -205,10 +205,13 @@ def unsettled_search(run: ReportData) -> str:
 
 def nothing_to_build(run: ReportData) -> str:
     """Why no design is recommended although there are feasible ones."""
-    return (
-        f"{left_out(run)} Demand clearances (body_clearance_min_mm, plume_clearance_min_mm under [constraints]) and "
-        "search again."
+    kinds = {objection.kind for i in run.front for objection in run.objections(i) if objection.final}
+    weak = (
+        "Ask for larger safety factors or finer meshes ([fem] accuracy, edge_length_mm)" if kinds & {TOO_WEAK} else ""
     )
+    near = "Demand clearances (body_clearance_min_mm, plume_clearance_min_mm under [constraints])"
+    todo = [text for text in (near if kinds - {TOO_WEAK} else "", weak) if text]
+    return f"{left_out(run)} {'. '.join(todo)} and search again."
 
 
 def unchecked(run: ReportData) -> str:

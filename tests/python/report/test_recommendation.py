@@ -13,7 +13,7 @@ from codesign.report.objections import objections
 from codesign.report.page.document import page_document
 from codesign.report.page.summary import summary
 from codesign.report.reading import read_report_data
-from codesign.report.recommendation import left_out, load_cases, price, second_opinion, strength, why
+from codesign.report.recommendation import left_out, load_cases, nothing_to_build, price, second_opinion, strength, why
 from codesign.report.validation import Disturbance, Flight, Validation
 from codesign.report.verdict import run_verdict
 
@@ -133,6 +133,22 @@ def test_nothing_is_recommended_where_every_design_collides(tmp_path, evaluation
     assert '<h2 class="bad">No design to build</h2>' in text
     assert "Build design" not in text
     assert "overlap bodies of the robot" in text
+
+
+def test_nothing_is_recommended_where_finer_meshes_find_every_design_too_weak(tmp_path, evaluations):
+    run = report_data(tmp_path / "run", [e for e in evaluations if e.status == "feasible"][:3])
+    weak = {"safety_factor": 9.0, "peak_stress": 51e6, "stress_error": 2e6}
+    found = {
+        tuple(entry.evaluation.design.values()): part(entry.evaluation, **weak, load_case="load", cases={"load": weak})
+        for entry in run.entries
+    }
+    run = replace(run, confirmed=found)
+    assert run.recommended is None
+    text = nothing_to_build(run)
+    assert "below its limit 10" in text or "miss the limit of the safety factor on a finer mesh" in text
+    assert text.endswith(
+        "Ask for larger safety factors or finer meshes ([fem] accuracy, edge_length_mm) and search again."
+    )
 
 
 def test_a_design_that_is_not_settled_is_a_candidate(tmp_path, evaluations):
