@@ -34,12 +34,14 @@ def page_document(
     constraints = [key for key in _constraint_keys(run) if key != "flight_missed_share" or _any_nonzero(run, key)]
     parts = list(dict.fromkeys(name for e in run.entries for name in e.evaluation.parts))
     front = set(run.front)
+    shown = {detail_key(evaluation) for evaluation in run.highlights.values()} | set(details or {})
+    told = {i for i, e in enumerate(run.entries) if i in front or detail_key(e.evaluation) in shown}
     rows = [
         {
             "id": e.id,
             "front": i in front,
             **_against(run.objections(i)),
-            **_row(run, e.evaluation, constraints, parts, files or {}),
+            **_row(run, e.evaluation, constraints, parts, files or {}, i in told),
         }
         for i, e in enumerate(run.entries)
     ]
@@ -81,8 +83,14 @@ def page_document(
 
 
 def _row(
-    run: ReportData, evaluation: Evaluation, constraints: list[str], parts: list[str], files: dict[str, Any]
+    run: ReportData,
+    evaluation: Evaluation,
+    constraints: list[str],
+    parts: list[str],
+    files: dict[str, Any],
+    told: bool = True,
 ) -> dict[str, Any]:
+    """A design; told: its strength in words too, which thousands of designs have no room for."""
     key = detail_key(evaluation)
     row: dict[str, Any] = {
         "x": [evaluation.design[v.name] for v in run.variables],
@@ -92,7 +100,7 @@ def _row(
         "c": [_shown(quantity(k), evaluation.constraints) for k in constraints],
         "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
-        "s": [_strength(run, evaluation, name) for name in parts],
+        "s": [_strength(run, evaluation, name) for name in parts] if told else [],
         "fl": [_shown(quantity, evaluation.flight) for quantity in FLIGHT_FACTS],
         "detail": key,
     }
