@@ -163,7 +163,7 @@ def page(report: Path) -> None:
         for chart in ("what-if-chart", "progress"):
             begun = float(shown.evaluate(f"element('{chart}')?.scrollIntoView(), performance.now()"))
             drawn = f"drawn['{chart}']"
-            wait = partial(lambda drawn, begun: float(shown.evaluate(drawn)) - begun, drawn, begun)
+            wait = partial(lambda drawn, begun: max(0.0, float(shown.evaluate(drawn)) - begun), drawn, begun)
             until(f"{chart} drawn after scrolling to it", drawn, wait)
         for said, action in ACTIONS.items():
             timed = f"const t = performance.now(); {action}; document.body.offsetHeight; return performance.now() - t;"
