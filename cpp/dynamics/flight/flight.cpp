@@ -35,7 +35,7 @@ class Flight {
 
  private:
   FailureReason advance_plant(int k);
-  bool move(bool held);
+  bool move(bool held, const PairedBodies* moved);
   void advance_jets(int k);
   bool update_dynamics();
   FailureReason control(int k);
@@ -139,18 +139,19 @@ FailureReason Flight::advance_plant(int k) {
       if (reason != FailureReason::kNotFailed) return reason;
     }
     inputs_.base_force = gusts_.at(k > 0 ? start + (i + 0.5) * torque_period_ : start);
-    if (!move(held)) return FailureReason::kSingularMass;
+    const PairedBodies* moved = held && k > 0 ? &*bodies_ : nullptr;  // by the torques
+    if (!move(held, moved)) return FailureReason::kSingularMass;
   }
   return plant_.fuel_left() < 0.0 ? FailureReason::kNoFuel : FailureReason::kNotFailed;
 }
 
-// By one period of the torque loop. Held: terms_ are of an earlier state.
-bool Flight::move(bool held) {
+// By one period of the torque loop. Held: terms_ are of an earlier state. moved: bodies at state_.
+bool Flight::move(bool held, const PairedBodies* moved) {
   if (own_plant_) {
     own_plant_(inputs_, torque_period_, state_);
     return true;
   }
-  return held ? plant_.advance(inputs_, state_, &*bodies_)
+  return held ? plant_.advance(inputs_, state_, moved)
               : plant_.advance(terms_, joint_space_, inputs_, state_);
 }
 

@@ -134,9 +134,10 @@ constexpr int kComponent[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 // The second derivative of a quadratic along two axes over the coefficient of their term.
 double second_derivative(int j, int k) { return j == k ? 2.0 : 1.0; }
 
-// Moves fits to the nearest ones, in the norm of their least squares, with one body force over the
-// whole patch: the derivative of div σ vanishes, nine conditions on the quadratic terms of a field.
-// At edges of the body, where a fit sees one side only, they replace what it does not see.
+// Moves fits to the nearest ones, in the norm of their least squares (shears count twice, as they
+// stand in the tensor: the result turns with the axes), with one body force over the whole patch:
+// the derivative of div σ vanishes, nine conditions on the quadratic terms of a field. At edges of
+// the body, where a fit sees one side only, they replace what it does not see.
 template <int Columns>
 void balance(const Eigen::LDLT<Eigen::Matrix<double, 10, 10>>& factor,
              Coefficients<Columns>& coefficients) {
@@ -153,7 +154,8 @@ void balance(const Eigen::LDLT<Eigen::Matrix<double, 10, 10>>& factor,
   }
   Eigen::Matrix<double, 60, 9> moves;  // of the coefficients by a unit multiplier
   for (int c = 0; c < 6; ++c) {
-    moves.middleRows<10>(10 * c) = inverse * rows.middleCols<10>(10 * c).transpose();
+    const double weight = c < 3 ? 1.0 : 2.0;
+    moves.middleRows<10>(10 * c) = inverse / weight * rows.middleCols<10>(10 * c).transpose();
   }
   const Eigen::LDLT<Conditions> conditions(Conditions(rows * moves));
   for (Eigen::Index field = 0; field < coefficients.cols() / 6; ++field) {
