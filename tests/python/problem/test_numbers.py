@@ -26,7 +26,7 @@ def number_paths(node, path=""):
     ("name", "design"),
     [
         ("gimbal_quad", {"reach": 200, "height": 30}),
-        ("hexarotor", {"propeller": "8in", "tilt": 25, "tube": "10x2"}),
+        ("hexarotor", {"propeller": "8in", "tilt": 25, "tube": "12x2"}),
     ],
 )
 def test_every_number_of_an_evaluation_is_known_and_every_known_one_is_there(name, design):

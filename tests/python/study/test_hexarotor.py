@@ -70,7 +70,7 @@ def test_sideways_flight_needs_tilt(study):
 
 
 def test_an_arm_with_its_motor_swings_as_rayleigh_says(study):
-    design = {"propeller": "8in", "tilt": 15, "tube": "10x2"}
+    design = {"propeller": "8in", "tilt": 15, "tube": "12x2"}
     arm = study.evaluate(design).parts["arm"]
     stiffness = 260.0 / arm["cases"]["landing"]["max_displacement"]
     moving = CHOICES["8in"]["parts.arm.masses.0.mass_kg"] + 33.0 / 140.0 * arm["mass"]  # and of a cantilever's own
@@ -80,7 +80,7 @@ def test_an_arm_with_its_motor_swings_as_rayleigh_says(study):
 
 def test_landing_decides_for_long_arms_on_tubes_that_are_stiff_enough(study):
     """A twentieth more than the limit of the frequency, and too weak."""
-    evaluation = study.evaluate({"propeller": "12in", "tilt": 25, "tube": "18x2"})
+    evaluation = study.evaluate({"propeller": "13in", "tilt": 25, "tube": "20x2"})
     assert evaluation.status == "infeasible"
     assert [key for key, margin in evaluation.margins.items() if margin < 0.0] == ["safety_factor"]
 
@@ -112,9 +112,19 @@ def test_mass_and_disk_of_the_rotors_follow_the_propeller(study, size):
         assert body.com[2] == pytest.approx(1e-3 * written["parts.arm.masses.0.point_mm.2"])
         disk = robot.link(f"rotor_{k}").visuals[1].geometry.cylinder
         assert 2e3 * disk.radius == pytest.approx(written["diameter"])
-    ends = [poses[f"arm_{k}"] @ [1e-3 * written["length"], 0.0, 0.0, 1.0] for k in (1, 2)]
-    gap = np.linalg.norm(ends[0] - ends[1]) - 1e-3 * written["diameter"]
-    assert propeller.TIP_GAP - 1e-6 <= gap <= propeller.TIP_GAP + 0.005
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    rim, above = 0.5e-3 * written["diameter"], propeller.PROPELLER_HEIGHT * 1e-3 * written["diameter"]
+    circle = np.stack([rim * np.cos(angle), rim * np.sin(angle), np.full(361, above), np.ones(361)])
+    rims = [(poses[f"rotor_{k}"] @ circle)[:3].T for k in range(1, 7)]
+    gaps = [np.linalg.norm(rims[k][:, None] - rims[(k + 1) % 6], axis=2).min() for k in range(6)]
+    assert propeller.TIP_GAP - 1e-4 <= min(gaps) <= propeller.TIP_GAP + 0.008  # 5 mm steps, other tilts, thinner tubes
+
+
+def test_rotors_of_neighbors_keep_the_clearance_at_every_tilt(study):
+    tilts = study.config.variables["tilt"]
+    assert (tilts.minimum, tilts.maximum) == propeller.TILTS
+    limit = 1e-3 * study.config.constraints.body_clearance_min_mm
+    assert limit < propeller.TIP_GAP - 0.004  # disks are drawn 4 mm thick
 
 
 def test_own_numbers_are_those_of_the_flight(study):

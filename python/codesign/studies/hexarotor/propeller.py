@@ -5,7 +5,8 @@ T = c_T ρ n² D⁴ and takes the power P = c_P ρ n³ D⁵, so its drag torque 
 ideal power is T √(T / (2 ρ A)), A the disk; over the figure of merit it is P, so c_P = √(2/π) c_T^1.5 / FM. The
 coefficients are those that J. B. Brandt and M. S. Selig measured of small two-blade propellers at rest ("Propeller
 Performance Data at Low Reynolds Numbers", AIAA 2011-1255), rounded. All motors reach the same largest thrust, so larger
-propellers turn slower and need more torque; a motor's mass goes with its torque, a propeller's with its volume.
+propellers turn slower and need more torque; a motor's mass goes with its torque, a propeller's with its volume, and
+the lengths of both with the diameter, as the robot's rotors are drawn.
 """
 
 from __future__ import annotations
@@ -19,9 +20,10 @@ AIR_DENSITY = 1.225  # kg/m³
 THRUST_COEFFICIENT, FIGURE_OF_MERIT = 0.11, 0.6
 ROTORS, INCH = 6, 0.0254
 MAX_THRUST = 12.0  # N, of every motor with its propeller
-HUB_RADIUS, TIP_GAP = 0.08, 0.02  # m: axis to the mounts in robot.toml; at least, between tips of neighbors
-MOTOR_MASS, MOTOR_RADIUS, MOTOR_HEIGHT = 0.4, 0.014, 0.03  # kg per N m of its torque; m
-PROPELLER_MASS, PROPELLER_HEIGHT = 0.7, 0.034  # kg/m³ of D³; m above the seat
+HUB_RADIUS, TIP_GAP = 0.08, 0.02  # m: axis to the mounts in robot.toml; at least, between disks of neighbors
+SEAT_HEIGHT, TILTS = 0.015, (15.0, 32.5)  # m, over the axis of the thickest arm; deg, of [variables.tilt]
+MOTOR_MASS, MOTOR_RADIUS, MOTOR_HEIGHT = 0.4, 0.055, 0.118  # kg per N m of its torque; of the diameter
+PROPELLER_MASS, PROPELLER_HEIGHT = 0.7, 0.134  # kg/m³ of D³; of the diameter, above the seat
 LAG, LAG_DIAMETER = 0.05, 0.254  # s, of a propeller of that diameter [m]; inertia times speed over torque goes with D²
 POWER_COEFFICIENT = math.sqrt(2.0 / math.pi) * THRUST_COEFFICIENT**1.5 / FIGURE_OF_MERIT
 
@@ -54,16 +56,28 @@ def motor_and_propeller(size: float) -> tuple[float, float]:
 def body(size: float) -> tuple[float, float, float, float]:
     """Mass [kg], height of its center over the seat [m], moments of inertia about that, across and along [kg m²]."""
     motor, blades = motor_and_propeller(size)
+    radius, height, above = MOTOR_RADIUS * size, MOTOR_HEIGHT * size, PROPELLER_HEIGHT * size
     mass = motor + blades
-    center = (motor * MOTOR_HEIGHT / 2.0 + blades * PROPELLER_HEIGHT) / mass
-    across = motor * ((3.0 * MOTOR_RADIUS**2 + MOTOR_HEIGHT**2) / 12.0 + (MOTOR_HEIGHT / 2.0 - center) ** 2)
-    across += blades * (size**2 / 24.0 + (PROPELLER_HEIGHT - center) ** 2)  # a turning rod, averaged
-    return mass, center, across, motor * MOTOR_RADIUS**2 / 2.0 + blades * size**2 / 12.0
+    center = (motor * height / 2.0 + blades * above) / mass
+    across = motor * ((3.0 * radius**2 + height**2) / 12.0 + (height / 2.0 - center) ** 2)
+    across += blades * (size**2 / 24.0 + (above - center) ** 2)  # a turning rod, averaged
+    return mass, center, across, motor * radius**2 / 2.0 + blades * size**2 / 12.0
+
+
+def spread(size: float, tilt: float) -> float:
+    """[m] between the mounts' ends of neighbors, 60 deg apart, that leaves the gap between their disks; tilt [deg].
+
+    Every second pair leans together, mirror images of each other: what is nearest lies on the line between them.
+    """
+    lean = math.cos(math.radians(30.0)) * math.sin(math.radians(tilt))  # of a propeller's axis towards the other
+    return TIP_GAP + 2.0 * (SEAT_HEIGHT + PROPELLER_HEIGHT * size) * lean + size * math.sqrt(1.0 - lean**2)
 
 
 def arm_length(size: float) -> float:
-    """[m] that leaves the gap between neighbors, whose axes are as far apart as from the hub's; up to 5 mm more."""
-    return math.ceil((size + TIP_GAP - HUB_RADIUS) / 0.005 - 1e-9) * 0.005
+    """[m] that leaves the gap at all tilts; neighbors are as far apart as from the hub's axis; up to 5 mm more."""
+    lowest, highest = TILTS
+    needed = max(spread(size, lowest + (highest - lowest) * k / 100) for k in range(101))
+    return math.ceil((needed - HUB_RADIUS) / 0.005 - 1e-9) * 0.005
 
 
 def choice(inches: int) -> str:
