@@ -20,7 +20,7 @@ from codesign.chain.study import Study, load_study
 from codesign.storage.runs import load_run
 
 OUT = Path(__file__).resolve().parents[1] / "docs" / "figures" / "hexarotor.png"
-TUBE_COLORS = {"14x2": "#9467bd", "16x2": "#ff7f0e", "18x2": "#1f77b4", "20x2": "#2ca02c"}
+TUBE_COLORS = {"16x2": "#ff7f0e", "18x2": "#1f77b4", "20x2": "#2ca02c", "22x2": "#9467bd"}
 
 
 def flown(study: Study, design: dict[str, float | str]) -> dyn.FlightLog:
