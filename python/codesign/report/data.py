@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -51,6 +52,17 @@ class PartWords:
     carried: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class DesignWords:
+    """The study with a design's values in it. parts: part -> its load case and material. flight: what one flight is."""
+
+    parts: Mapping[str, PartWords] = field(default_factory=dict)
+    flight: str = ""
+
+
+Limits = Mapping[str, tuple[str, float]]
+
+
 @dataclass(frozen=True)
 class ReportData:
     """A run as the report, the figures and the viewer read it.
@@ -62,9 +74,11 @@ class ReportData:
     provenance: what made the numbers, for people.
     export_original: what exports a design by its values.
     labels: variable -> name for people.   notes: what a reader must know before trusting the numbers.
-    baseline_missing: why there is no baseline.   flight_words: what one flight is.
+    baseline_missing: why there is no baseline.
     tolerances: chosen designs as they would be made, if they were sampled.
-    part_words: part -> its load case and material.   stress_tolerance: relative error of stresses that is asked for.
+    describe: design -> how its parts are loaded and made, how it flies: variables may set any number of the study.
+    limits_of: design -> `limits` of that design, None where no variable sets one.
+    stress_tolerance: relative error of stresses that is asked for.
     confirmed: values of a design -> its parts on finer meshes, or why there are none.
     compared: other runs whose fronts are shown beside this one's.
     """
@@ -85,8 +99,8 @@ class ReportData:
     export_original: str = "codesign export"
     notes: tuple[str, ...] = ()
     baseline_missing: str = "The study names no original design to compare with."
-    part_words: dict[str, PartWords] = field(default_factory=dict)
-    flight_words: str = ""
+    describe: Callable[[Mapping[str, DesignValue]], DesignWords] = lambda _: DesignWords()
+    limits_of: Callable[[Mapping[str, DesignValue]], Limits] | None = None
     tolerances: Tolerances | None = None
     stress_tolerance: float | None = None
     confirmed: dict[tuple[DesignValue, ...], Evaluation] = field(default_factory=dict)
@@ -154,7 +168,22 @@ class ReportData:
     def against(self, evaluation: Evaluation) -> tuple[Objection, ...]:
         """What speaks against building a design of this study; its strength is judged as confirmed, if it is."""
         made = self.tolerances.of(evaluation.design) if self.tolerances is not None else None
-        return objections(self.as_confirmed(evaluation), self.limits, made, self.stress_tolerance)
+        limits = self.demanded(evaluation)
+        return objections(self.as_confirmed(evaluation), limits, made, self.stress_tolerance)
+
+    def demanded(self, evaluation: Evaluation) -> Limits:
+        """What the study demands of a design: constraint -> (sign, limit in SI units)."""
+        return self.limits if self.limits_of is None else self.limits_of(evaluation.design)
+
+    @property
+    def subject(self) -> Evaluation | None:
+        """The design that sentences about the run as a whole are about: the recommended one, else the original."""
+        return self.baseline if self.recommended is None else self.entries[self.recommended].evaluation
+
+    @property
+    def subject_words(self) -> DesignWords:
+        """The study with the values of `subject`."""
+        return DesignWords() if self.subject is None else self.describe(self.subject.design)
 
     def as_confirmed(self, evaluation: Evaluation) -> Evaluation:
         """An evaluation with its parts as confirmed, where the run knows that."""

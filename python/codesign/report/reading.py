@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from codesign.chain.confirmed import CONFIRMED
 from codesign.chain.judge import limits
 from codesign.errors import CodesignError, DesignError
+from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 from codesign.problem.quantities import words
 from codesign.report.comparison import load_comparison
-from codesign.report.data import Entry, ReportData
+from codesign.report.data import DesignWords, Entry, Limits, ReportData
 from codesign.report.details import load_details
 from codesign.report.study_words import flight_words, objective_quantities, part_words
 from codesign.report.tolerances import load_tolerances
 from codesign.storage.runs import Run, load_run, run_study
+from codesign.study.choices import places_set
+from codesign.study.config import StudyConfig
 
 logger = logging.getLogger(__name__)
 
@@ -52,14 +56,14 @@ def read_report_data(
         waiting=run.counts.get("queued", 0) + run.counts.get("running", 0),
         planned=len(run.search_records) + run.missing if run.missing or not run.finished else None,
         stopped=run.outcome if run.finished and run.missing else None,
-        limits=demands(study) if study is not None else {},
+        limits=demands(study.config) if study is not None else {},
         provenance=provenance(run),
         export_original=f"codesign export --study {run.study['source']}",
         labels={name: v.label for name, v in study.config.variables.items()} if study is not None else {},
         notes=_notes(run, study),
         baseline_missing=_baseline_missing(study) or ReportData.baseline_missing,
-        part_words=part_words(study.config) if study is not None else {},
-        flight_words=flight_words(study.config) if study is not None else "",
+        describe=description(study) if study is not None else lambda _: DesignWords(),
+        limits_of=_limits_of(study),
         tolerances=load_tolerances(Path(directory)),
         confirmed={tuple(r.evaluation.design.values()): r.evaluation for r in run.records if r.trajectory == CONFIRMED},
         stress_tolerance=study.config.fem.tolerance if study is not None else None,
@@ -68,10 +72,43 @@ def read_report_data(
     return replace(read, compared=others) if others else read
 
 
-def demands(study: Any) -> dict[str, tuple[str, float]]:
-    """What the study demands of its constraints, SI units."""
+def description(study: Any) -> Callable[[Mapping[str, DesignValue]], DesignWords]:
+    """The study in words, with a design's values in it."""
+
+    @cache
+    def of(values: tuple[tuple[str, DesignValue], ...]) -> DesignWords:
+        config = configured(study, dict(values))
+        return DesignWords(part_words(config), flight_words(config))
+
+    return lambda design: of(tuple(design.items()))
+
+
+def configured(study: Any, design: Mapping[str, DesignValue]) -> StudyConfig:
+    """The study's settings with a design's values; as they stand where it has other variables by now."""
+    config: StudyConfig = study.config
+    try:
+        study.space.indices(design)
+    except DesignError:
+        return config
+    found: StudyConfig = study.configured(design)
+    return found
+
+
+def _limits_of(study: Any) -> Callable[[Mapping[str, DesignValue]], Limits] | None:
+    """Limits by design, where some variable sets one."""
+    if study is None or not any(_limits(place) for place in places_set(study.config)):
+        return None
+    return lambda design: demands(configured(study, design))
+
+
+def _limits(place: str) -> bool:
+    return place.startswith("constraints.") or place.endswith(".safety_factor_min")
+
+
+def demands(config: StudyConfig) -> dict[str, tuple[str, float]]:
+    """What a study demands of its constraints, SI units."""
     bounds = {}
-    for limit in limits(study.config):
+    for limit in limits(config):
         sign, bound = (">=", limit.least) if limit.least is not None else ("<=", limit.most)
         if bound is not None:
             bounds[limit.quantity.key] = (sign, bound)

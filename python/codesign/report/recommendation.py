@@ -131,11 +131,12 @@ def strength(run: ReportData) -> str:
     factors = {name: factor for name, part in parts.items() if (factor := part.get("safety_factor"))}
     if not factors or not math.isfinite(min(factors.values())):
         return ""
-    limits = {name: least_factor(name, parts[name].get("load_case", ""), run.limits) for name in factors}
+    demanded, described = run.demanded(run.entries[run.recommended].evaluation), run.subject_words.parts
+    limits = {name: least_factor(name, parts[name].get("load_case", ""), demanded) for name in factors}
     weakest = min(factors, key=lambda name: factors[name] / (limits[name] or 1.0))
     asked = f" (at least {limits[weakest]:g} is asked for)" if limits[weakest] is not None else ""
     asked += decided(parts[weakest])
-    known = run.part_words.get(weakest)
+    known = described.get(weakest)
     case = f": {known.load}; {known.material}. Other loads and supports were not analyzed" if known else ""
     name = weakest.replace("_", " ")
     return f"Its weakest part, the {name}, yields at {factors[weakest]:.1f} times its load{asked}{case}."
@@ -146,8 +147,9 @@ def load_cases(run: ReportData) -> str:
     if run.recommended is None:
         return ""
     parts = run.as_confirmed(run.entries[run.recommended].evaluation).parts
-    told = [text for name in parts if (known := run.part_words.get(name)) is not None
-            for text in strength_words(name, parts[name], run.limits, known.carried)]  # fmt: skip
+    demanded, described = run.demanded(run.entries[run.recommended].evaluation), run.subject_words.parts
+    told = [text for name in parts if (known := described.get(name)) is not None
+            for text in strength_words(name, parts[name], demanded, known.carried)]  # fmt: skip
     if not told:
         return ""
     asked = run.stress_tolerance

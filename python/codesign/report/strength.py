@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -31,7 +32,8 @@ class CaseStrength:
     def text(self) -> str:
         """`safety factor 3.94 (at least 1.5), peak stress 70 ± 2.7 MPa`."""
         asked = f" (at least {self.least:g})" if self.least is not None else ""
-        factor = "not stressed" if self.factor is None else f"safety factor {self.factor:.3g}{asked}"
+        stressed = self.factor is not None and math.isfinite(self.factor)
+        factor = "not stressed" if not stressed else f"safety factor {self.factor:.3g}{asked}"
         return f"{factor}, peak stress {self.stress}"
 
     @property
@@ -120,7 +122,7 @@ def _mm(length: float) -> str:
 def frequency_words(name: str, part: Mapping[str, Any], limits: Limits, carried: str) -> str:
     """A part's first natural frequency with its limit and with what it carries; "" where it was not computed."""
     frequency = part.get("first_frequency")
-    if frequency is None:
+    if frequency is None or not math.isfinite(frequency):
         return ""
     least = least_frequency(name, limits)
     asked = f" (at least {least:g}\u202fHz)" if least is not None else ""

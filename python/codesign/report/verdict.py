@@ -86,7 +86,8 @@ def run_verdict(run: ReportData, position: int, evaluation: Evaluation | None = 
 
 def study_verdict(study: Any, evaluation: Evaluation) -> Verdict:
     """The verdict on a design that is of no run."""
-    against = objections(evaluation, demands(study), None, study.config.fem.tolerance)
+    config = study.configured(evaluation.design)
+    against = objections(evaluation, demands(config), None, config.fem.tolerance)
     values = " ".join(f"--set {name}={value}" for name, value in evaluation.design.items())
     command = f"codesign evaluate --study {study.source} {values} --confirm"
     notes = ["Its values were given, not found by a search: whether others are better is not known."]

@@ -108,7 +108,7 @@ def gained(run: ReportData) -> str:
 
 def caveats(run: ReportData) -> list[str]:
     """What a reader must know before trusting the page."""
-    notes = list(run.notes) + [known.warning for known in run.part_words.values() if known.warning]
+    notes = list(run.notes) + [known.warning for known in run.subject_words.parts.values() if known.warning]
     if run.stopped is not None:
         command = f" codesign resume {shlex.quote(str(run.directory))} makes the others." if not run.notes else ""
         notes.append(

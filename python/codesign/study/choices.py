@@ -40,6 +40,16 @@ def settings_of(config: StudyConfig, design: Mapping[str, DesignValue]) -> Itera
                     yield key, value
 
 
+def places_set(config: StudyConfig) -> set[str]:
+    """Every place of the study that some design sets, as a dotted path."""
+    return {
+        place
+        for variable in config.variables.values()
+        for place in (*variable.sets, *variable.chosen_keys)
+        if "." in place
+    }
+
+
 def is_number(value: float | bool | str) -> bool:
     """Whether a choice's value is a number."""
     return isinstance(value, int | float) and not isinstance(value, bool)

@@ -10,6 +10,7 @@ import pytest
 import codesign
 from codesign.chain.study import load_study
 from codesign.report.details import flight_history
+from codesign.report.reading import description
 from codesign.report.study_words import flight_words, load_words, objective_quantities, part_words
 from codesign.study.load_config import LoadConfig
 
@@ -101,3 +102,21 @@ def test_a_flight_without_counted_joint_groups_has_a_history():
         np.zeros((rows, 3)), np.zeros((rows, 1)), np.zeros((rows, 2)), np.zeros(rows))  # fmt: skip
     history = flight_history(log, "hover", ("a", "b", "c", "d"), ("j",), {})
     assert history["joint_velocity_error"].shape == (rows, 0)
+
+
+def test_what_a_design_carries_and_is_asked_is_that_designs(tmp_path):
+    """A choice that sets the carried mass, and a variable that sets a limit, change the words of each design."""
+    study = load_study("hexarotor")
+    designs = [dict(study.baseline) | {"propeller": name} for name in study.space.variables[0].values]
+    describe = description(study)
+    for design in designs:
+        (mass,) = study.configured(design).parts[0].masses
+        said = f"{mass.mass_kg:g}\u202fkg on face seat"
+        assert said in describe(design).parts["arm"].carried
+        assert said in describe(design).parts["arm"].load
+    assert len({describe(design).parts["arm"].load for design in designs}) == len(designs)
+
+
+def test_a_study_with_other_variables_describes_an_old_design_as_it_stands():
+    study = load_study("hexarotor")
+    assert description(study)({"gone": 1.0}).parts == part_words(study.config)

@@ -23,7 +23,7 @@ from codesign.report.reading import demands
 from codesign.report.strength import CaseStrength, case_strengths, frequency_words
 from codesign.report.study_words import objective_quantities, part_words
 from codesign.report.verdict import Verdict
-from codesign.study.config import FemConfig
+from codesign.study.config import FemConfig, StudyConfig
 
 STRESS_FILES = (
     "In `stress/*.vtu`, the peak stress is read where `counts_for_peak` is 1; the strings in the field data say what "
@@ -118,8 +118,12 @@ class OrderPage:
         )
 
     @property
+    def _config(self) -> StudyConfig:
+        return self.order.study.configured(self.order.design)
+
+    @property
     def _words(self) -> dict[str, PartWords]:
-        return part_words(self.order.study.configured(self.order.design))
+        return part_words(self._config)
 
     def _head(self) -> list[str]:
         order, study = self.order, self.order.study
@@ -169,7 +173,7 @@ class OrderPage:
         return rows
 
     def _cases(self, name: str, part: Mapping[str, Any]) -> list[CaseStrength]:
-        return case_strengths(name, part, demands(self.order.study)) if part else []
+        return case_strengths(name, part, demands(self._config)) if part else []
 
     def _case_row(self, name: str, case: CaseStrength, how: str) -> list[Any]:
         factor = "not stressed" if case.factor is None else f"{case.factor:.3g}"
@@ -190,7 +194,7 @@ class OrderPage:
             words = self._words[name]
             model = f"; analyzed: {self.models[name]}" if name in self.models else ""
             lines.append(f"- {name}: {words.held}{model}." + (f" It carries {words.carried}." if words.carried else ""))
-            frequency = frequency_words(name, part, demands(self.order.study), words.carried)
+            frequency = frequency_words(name, part, demands(self._config), words.carried)
             place = next((case.place for case in self._cases(name, part) if case.decides), "")
             lines += [f"- {text[:1].upper()}{text[1:]}." for text in (frequency, place) if text]
         tolerance = f"{100 * self.order.study.config.fem.tolerance:g}\u202f%"

@@ -53,7 +53,8 @@ function drawParts(i) {
     if (!values) return '';
     const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd>${before(d, k, n, factor, digits)}</div>`);
     const strength = (d.s[k] || []).map(text => `<p class="count">${escaped(text)}.</p>`).join('');
-    const about = strength + [part.material, part.load && `Load: ${part.load}`].filter(Boolean).map(text => `<p class="count">${escaped(text)}.</p>`).join('') + (part.warning ? `<p class="count bad">${escaped(part.warning)}</p>` : '');
+    const made = report.about[d.about]?.[k] || {};
+    const about = strength + [made.material, made.load && `Load: ${made.load}`].filter(Boolean).map(text => `<p class="count">${escaped(text)}.</p>`).join('') + (made.warning ? `<p class="count bad">${escaped(made.warning)}</p>` : '');
     const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, colored by stress; drag to turn"></div>${stressScale(detail.parts[part.key])}` : '';
     return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl>${about}</article>`;
   });

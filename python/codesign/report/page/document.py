@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -53,6 +54,7 @@ def page_document(
             against = _against(run.against(run.baseline))
             numbers = _row(run, run.baseline, constraints, parts, files or {})
             rows.append({"id": None, "front": False, **against, **numbers})
+    about = _once(rows)
     return {
         "variables": [
             {"key": v.name, "label": run.label(v), "unit": _unit(v.unit), "min": v.minimum, "max": v.maximum}
@@ -64,7 +66,8 @@ def page_document(
             for k, o in enumerate(run.objectives)
         ],
         "constraints": [_constraint(run, key) for key in constraints],
-        "parts": [_part_words(run, name) for name in parts],
+        "parts": [{"key": name, "label": words(name)} for name in parts],
+        "about": about,
         "flight_facts": [{"label": q.label, "unit": q.unit} for q in FLIGHT_FACTS],
         "designs": rows,
         "baseline": baseline,
@@ -101,6 +104,7 @@ def _row(
         "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
         "s": [_strength(run, evaluation, name) for name in parts] if told else [],
+        "about": [_about(run, evaluation, name) for name in parts] if told else None,
         "fl": [_shown(quantity, evaluation.flight) for quantity in FLIGHT_FACTS],
         "detail": key,
     }
@@ -115,18 +119,27 @@ def _part(numbers: dict[str, Any]) -> list[float | None]:
 
 def _strength(run: ReportData, evaluation: Evaluation, name: str) -> list[str]:
     """Load cases, frequency and deciding place of a part in words, as confirmed where it is."""
-    part, known = run.as_confirmed(evaluation).parts.get(name), run.part_words.get(name)
-    return strength_words(name, part, run.limits, known.carried if known else "") if part else []
+    part, known = run.as_confirmed(evaluation).parts.get(name), run.describe(evaluation.design).parts.get(name)
+    return strength_words(name, part, run.demanded(evaluation), known.carried if known else "") if part else []
 
 
 def _against(found: Sequence[Objection]) -> dict[str, Any]:
     return {"against": [objection.text for objection in found], "barred": any(o.final for o in found)}
 
 
-def _part_words(run: ReportData, name: str) -> dict[str, str]:
-    known = run.part_words.get(name)
-    described = {"load": known.load, "material": known.material, "warning": known.warning} if known else {}
-    return {"key": name, "label": words(name), **described}
+def _about(run: ReportData, evaluation: Evaluation, name: str) -> dict[str, str]:
+    """Material and load of a part of a design: variables may set them."""
+    known = run.describe(evaluation.design).parts.get(name)
+    return {"load": known.load, "material": known.material, "warning": known.warning} if known else {}
+
+
+def _once(rows: list[dict[str, Any]]) -> list[Any]:
+    """What the rows say of material and load, each once: thousands say the same; rows keep the place in this list."""
+    places: dict[str, int] = {}
+    for row in rows:
+        if row["about"]:
+            row["about"] = places.setdefault(json.dumps(row["about"]), len(places))
+    return [json.loads(text) for text in places]
 
 
 def _shown(quantity: Quantity, numbers: Mapping[str, Any]) -> float | None:

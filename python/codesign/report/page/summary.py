@@ -61,10 +61,11 @@ def _tile(run: ReportData, k: int, known: Evidence) -> str:
 
 def _trust(run: ReportData, validation: Validation | None) -> str:
     """What the changes are of, and how to learn whether they last."""
+    flown = run.subject_words.flight
     if run.baseline_vector is None or validated(run, validation):
-        return run.flight_words
+        return flown
     command = f"codesign validate {shlex.quote(str(run.directory))}"
-    return f"{run.flight_words} Whether these changes last on other flights is not known: {command}."
+    return f"{flown} Whether these changes last on other flights is not known: {command}."
 
 
 def _build(run: ReportData) -> str:
