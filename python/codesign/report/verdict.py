@@ -12,6 +12,7 @@ from codesign.report.data import ReportData
 from codesign.report.objections import UNSETTLED, Objection, objections
 from codesign.report.reading import demands
 from codesign.report.recommendation import passed_over, unsettled_search
+from codesign.report.watching import watch
 
 TITLES = {"build": "Build {}", "candidate": "Candidate: {}", "barred": "{}"}
 HEADS = {"build": "", "candidate": "Not to be built yet", "barred": "Not to be built"}
@@ -66,7 +67,7 @@ def run_verdict(run: ReportData, position: int, evaluation: Evaluation | None = 
     further = (
         [text for text in (unsettled_search(run), passed_over(run)) if text] if position == run.recommended else []
     )
-    notes = list(run.notes)
+    notes = [*run.notes, *watch(evaluation or entry.evaluation)]
     tried = run.confirmed.get(tuple(entry.evaluation.design.values()))
     if tried is not None and not tried.parts:
         notes.append(f"Its parts could not be confirmed on a finer mesh: {tried.reason}.")
@@ -91,6 +92,7 @@ def study_verdict(study: Any, evaluation: Evaluation) -> Verdict:
     values = " ".join(f"--set {name}={value}" for name, value in evaluation.design.items())
     command = f"codesign evaluate --study {study.source} {values} --confirm"
     notes = ["Its values were given, not found by a search: whether others are better is not known."]
+    notes += watch(evaluation)
     return _verdict("this design", against, [], _remedies(against, command), notes)
 
 

@@ -13,6 +13,7 @@ from codesign.report.data import ReportData
 from codesign.report.evidence import Evidence, evidence, validated
 from codesign.report.validation import Validation
 from codesign.report.verdict import run_verdict
+from codesign.report.watching import watch
 
 
 def summary(run: ReportData, picture: bytes | None = None, validation: Validation | None = None) -> str:
@@ -86,6 +87,7 @@ def _build(run: ReportData) -> str:
     if verdict.reasons:
         open_points = "".join(f"<li>{escape(text)}</li>" for text in verdict.reasons)
         points = f'<p class="bad">{verdict.head}:</p><ul class="bad">{open_points}</ul>'
+    points += "".join(f'<p class="notice">{escape(text)}</p>' for text in watch(entry.evaluation))
     said = [
         " ".join(verdict.remedies),
         recommendation.why(run),
@@ -93,7 +95,7 @@ def _build(run: ReportData) -> str:
         recommendation.strength(run),
         recommendation.load_cases(run),
         recommendation.as_made(run),
-        recommendation.unchecked(run),
+        recommendation.clearances(run),
     ]
     paragraphs = "".join(f"<p>{escape(text.strip())}</p>" for text in said if text.strip())
     return (
