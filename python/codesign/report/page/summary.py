@@ -12,8 +12,7 @@ from codesign.report.comparison import shares_in_words
 from codesign.report.data import ReportData
 from codesign.report.evidence import Evidence, evidence, validated
 from codesign.report.validation import Validation
-from codesign.report.verdict import run_verdict
-from codesign.report.watching import watch
+from codesign.report.verdict import run_verdict, watch
 
 
 def summary(run: ReportData, picture: bytes | None = None, validation: Validation | None = None) -> str:

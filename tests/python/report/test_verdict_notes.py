@@ -3,7 +3,7 @@
 import pytest
 
 from codesign.problem.evaluation import Evaluation
-from codesign.report.watching import UNCHECKED, watch
+from codesign.report.verdict import UNCHECKED, watch
 
 CHECKED = {"body_clearance": 0.01}
 
