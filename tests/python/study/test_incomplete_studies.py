@@ -119,6 +119,7 @@ def test_an_edited_study_is_loaded_anew(tmp_path):
     second = load_study(first.path)
     assert second.config.flight.jets.max_thrust_n == 260.0
     assert second.hash != first.hash
+    (first.path.parent / "robot.toml").unlink()  # the URDF is no longer made from it
     robot = first.path.parent / "robot.urdf"
     robot.write_text(robot.read_text().replace("</robot>", "<!-- edited --></robot>"))
     assert load_study(first.path).hash != second.hash
