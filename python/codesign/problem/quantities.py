@@ -37,6 +37,21 @@ class Quantity:
     path: str = ""
 
     @property
+    def maximized(self) -> bool:
+        """Whether the number under `key` is the negative of what people name, since it is maximized."""
+        return self.key.startswith(MINUS)
+
+    @property
+    def name(self) -> str:
+        """Label of the number that people name: without the minus of a maximized one."""
+        return self.label.removeprefix("−") if self.maximized else self.label
+
+    @property
+    def sign(self) -> float:
+        """From a stored or shown value to the number that `name` is of: -1 for a maximized one."""
+        return -1.0 if self.maximized else 1.0
+
+    @property
     def title(self) -> str:
         """Label with unit, for axes and column heads."""
         return f"{self.label} ({self.unit})" if self.unit else self.label

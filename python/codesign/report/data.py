@@ -297,7 +297,8 @@ class ReportData:
         for objective in self.objectives:
             if objective.key in self.best:
                 chosen.setdefault(
-                    f"lowest {objective.label.lower()}", self.entries[self.best[objective.key]].evaluation
+                    f"{'highest' if objective.maximized else 'lowest'} {objective.name.lower()}",
+                    self.entries[self.best[objective.key]].evaluation,
                 )
         if self.baseline is not None:
             chosen["original"] = self.baseline

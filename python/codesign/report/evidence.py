@@ -25,10 +25,11 @@ def evidence(run: ReportData, validation: Validation | None, k: int) -> Evidence
     if not changes:
         return Evidence("", "no other flights, no error estimate")
     low, high = min(changes), max(changes)
+    first, last = sorted(run.objectives[k].sign * change for change in (low, high))
     flights = plural(len(changes), "other flight")
     if len(changes) < ENOUGH or (low <= EQUAL and high >= -EQUAL):
-        return Evidence("", f"not certain: {percent(low)} … {percent(high)} in {flights}")
-    return Evidence("good" if high < 0 else "bad", f"{percent(low)} … {percent(high)} in {flights}")
+        return Evidence("", f"not certain: {percent(first)} … {percent(last)} in {flights}")
+    return Evidence("good" if high < 0 else "bad", f"{percent(first)} … {percent(last)} in {flights}")
 
 
 def validated(run: ReportData, validation: Validation | None) -> bool:

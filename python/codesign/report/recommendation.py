@@ -33,8 +33,8 @@ def why(run: ReportData) -> str:
     following = f"; next {'is' if len(ranks) == 1 else 'are'} {listed(ranks)}" if ranks else ""
     kept = " Only designs that are nowhere worse than the original were considered." if _guarded(run) else ""
     return (
-        f"It is the knee of the {len(run.choices)} best compromises: with every objective scaled to run from 0 (lowest "
-        f"among them) to 1 (highest), it is nearest to 0 in all of them, at a distance of {run.ranking[0][1]:.2f}"
+        f"It is the knee of the {len(run.choices)} best compromises: with every objective scaled to run from 0 (best "
+        f"among them) to 1 (worst), it is nearest to 0 in all of them, at a distance of {run.ranking[0][1]:.2f}"
         f"{following}. Other weights of the objectives would choose otherwise.{kept} {left_out(run)}"
     ).rstrip()
 
@@ -81,23 +81,21 @@ def passed_over(run: ReportData) -> str:
 def _best(run: ReportData, position: int) -> str:
     """The only objective of a design, with its unit."""
     (objective,) = run.objectives
-    return objective.text(run.entries[position].evaluation.objectives[objective.key], 4)
+    return objective.text(objective.sign * run.entries[position].evaluation.objectives[objective.key], 4)
 
 
 def price(run: ReportData) -> str:
-    """What the recommended design gives up against the lowest of each objective that can be had."""
+    """What the recommended design gives up against the best of each objective that can be had."""
     if run.recommended is None or len(run.choices) < 2:
         return ""
-    lost = []
+    lost: dict[str, list[str]] = {}
     for k, objective in enumerate(run.objectives):
         best, here = run.values[run.choices, k].min(), run.values[run.recommended, k]
         if best != 0 and (here - best) / abs(best) > EQUAL:
-            lost.append(f"{objective.label.lower()} {100 * (here - best) / abs(best):.1f}\u202f%")
-    return (
-        f"Its price: {listed(lost)} above the lowest among them."
-        if lost
-        else "It is also the best in every single objective."
-    )
+            side = "below the highest" if objective.maximized else "above the lowest"
+            lost.setdefault(side, []).append(f"{objective.name.lower()} {100 * (here - best) / abs(best):.1f}\u202f%")
+    told = "; ".join(f"{listed(names)} {side} among them" for side, names in lost.items())
+    return f"Its price: {told}." if lost else "It is also the best in every single objective."
 
 
 def second_opinion(run: ReportData) -> str:
@@ -183,12 +181,11 @@ def as_made(run: ReportData) -> str:
         for name, spread in found.numbers.items()
         if name.endswith(".safety_factor")
     ]
-    labels = {objective.key: objective.label.lower() for objective in run.objectives}
-    told += [
-        f"{labels[name]} {percent(spread.low / spread.median - 1.0)} to {percent(spread.high / spread.median - 1.0)}"
-        for name, spread in found.numbers.items()
-        if name in labels and spread.median
-    ]
+    labels = {objective.key: objective.name.lower() for objective in run.objectives}
+    for name, spread in found.numbers.items():
+        if name in labels and spread.median:
+            low, high = sorted((spread.low / spread.median, spread.high / spread.median))
+            told.append(f"{labels[name]} {percent(low - 1.0)} to {percent(high - 1.0)}")
     feasible = f"{found.feasible} are feasible; nine of ten have {listed(told)}"
     return f"Made {found.samples} times within its tolerances, {feasible}."
 

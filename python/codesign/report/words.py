@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from codesign.problem.quantities import Quantity
 from codesign.report.data import ReportData
 
 EQUAL = 5e-4  # relative change that is called none
@@ -46,10 +47,10 @@ def plural(count: int, one: str, many: str | None = None) -> str:
 def searched(run: ReportData) -> str:
     """What was optimized and what came out of it, in numbers of designs."""
     names = listed([run.label(v).lower() for v in run.variables])
-    aims = listed([o.label.lower() for o in run.objectives])
+    aims = aims_in_words(run)
     total = len(run.entries)
     if not total:
-        return f"The search varies {names} to lower {aims}. No design has been evaluated yet."
+        return f"The search varies {names} to {aims}. No design has been evaluated yet."
     feasible = run.counts["feasible"]
     if not feasible:
         outcome = "None of them meets every constraint"
@@ -65,7 +66,14 @@ def searched(run: ReportData) -> str:
     if len(run.front) > 1:
         outcome += f"; {len(run.front)} are best compromises, which no other design beats in everything"
     evaluated = f"Of {combinations(run):,} possible designs it evaluated {total:,}."
-    return f"The search varied {names} to lower {aims}. {evaluated} {outcome}."
+    return f"The search varied {names} to {aims}. {evaluated} {outcome}."
+
+
+def aims_in_words(run: ReportData) -> str:
+    """`lower mass and power, and raise stiffness`."""
+    lowered = listed([o.name.lower() for o in run.objectives if not o.maximized])
+    raised = listed([o.name.lower() for o in run.objectives if o.maximized])
+    return ", and ".join(text for text in (lowered and f"lower {lowered}", raised and f"raise {raised}") if text)
 
 
 def combinations(run: ReportData) -> int:
@@ -85,25 +93,29 @@ def gained(run: ReportData) -> str:
         )
     gain = run.gain(run.recommended)
     assert gain is not None
-    lower = [
-        f"{o.label.lower()} by {100 * -g:.1f}\u202f%" for o, g in zip(run.objectives, gain, strict=True) if g < -EQUAL
-    ]
-    higher = [
-        f"{o.label.lower()} by {100 * g:.1f}\u202f%"
-        for o, g in zip(run.objectives, gain, strict=True)
-        if EQUAL < g < np.inf
-    ]
+    better = _changes([(o, g) for o, g in zip(run.objectives, gain, strict=True) if g < -EQUAL])
+    worse = _changes([(o, g) for o, g in zip(run.objectives, gain, strict=True) if EQUAL < g < np.inf])
     if run.entries[run.recommended].evaluation.design == run.baseline.design if run.baseline else False:
         return "The original design is itself the best compromise found."
-    if not lower:
+    if not better:
         return "No design found so far improves on the original."
-    text = f"Compared with the original, the recommended design lowers {listed(lower)}"
-    if higher:
-        return f"{text}; it raises {listed(higher)}."
+    text = f"Compared with the original, the recommended design {better}"
+    if worse:
+        return f"{text}; it {worse}."
     both = len(run.dominating)
     return f"{text}." + (
         f" {both} of the {len(run.front)} compromises beat the original in every objective." if both > 1 else ""
     )
+
+
+def _changes(changes: Sequence[tuple[Quantity, float]]) -> str:
+    """`lowers mass by 3.0 % and raises stiffness by 2.0 %` of changes of minimized numbers."""
+    told = []
+    for verb, sense in (("lowers", -1.0), ("raises", 1.0)):
+        names = [f"{o.name.lower()} by {100 * abs(g):.1f}\u202f%" for o, g in changes if o.sign * g * sense > 0]
+        if names:
+            told.append(f"{verb} {listed(names)}")
+    return " and ".join(told)
 
 
 def caveats(run: ReportData) -> list[str]:

@@ -1,5 +1,6 @@
 """Numbers of the report stand in the units that are written beside them."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,8 +12,8 @@ from codesign.problem.quantities import quantity
 from codesign.report.data import Entry, ReportData
 from codesign.report.page.document import page_document
 from codesign.report.page.summary import summary
-from codesign.report.recommendation import left_out, passed_over
-from codesign.report.words import caveats
+from codesign.report.recommendation import left_out, passed_over, price
+from codesign.report.words import caveats, gained, searched
 from codesign.search.progress import Progress, describe
 
 KEYS = ("mass", "max_displacement")
@@ -97,3 +98,29 @@ def test_a_search_that_was_stopped_before_its_budget_says_so():
     run = replace(designs((0.09,), (0.08,)), planned=34, stopped="wall time of 540 s used up")
     (said, *_) = caveats(run)
     assert "2 of 34 designs were evaluated (wall time of 540 s used up). codesign resume run makes the others" in said
+
+
+def test_a_maximized_number_reads_forward():
+    """Stored as -80 and -100 Hz, it is said to rise from 80 to 100, by a quarter, and is highest at its best."""
+    run = designs((1.0, -100.0), (0.9, -80.0), (1.2, -110.0))
+    run = replace(run, objectives=(quantity("mass"), quantity("-first_frequency")))
+    keyed = [{"mass": mass, "-first_frequency": f} for mass, f in ((1.0, -100.0), (0.9, -80.0), (1.2, -110.0))]
+    entries = tuple(
+        replace(e, evaluation=replace(e.evaluation, objectives=values))
+        for e, values in zip(run.entries, keyed, strict=True)
+    )
+    run = replace(run, entries=entries, baseline=replace(entries[1].evaluation, design={"wall": 9}))
+    run = replace(run, entries=entries[:1])
+    assert "to lower mass of the parts, and raise first natural frequency" in searched(run)
+    assert gained(run).startswith(
+        "Compared with the original, the recommended design raises first natural frequency by 25"
+    )
+    page = summary(run)
+    assert "+25.0\u202f%" in page
+    assert "80 → 100 Hz" in page
+    assert "−" not in re.sub(r"<(script|style).*?</\1>", "", page, flags=re.S)
+    both = replace(run, entries=entries, baseline=None)
+    assert "first natural frequency" in price(both)
+    assert "below the highest among them" in price(both)
+    (first, second) = page_document(run)["objectives"]
+    assert (first["sign"], second["sign"], second["name"]) == (1.0, -1.0, "First natural frequency")

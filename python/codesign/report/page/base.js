@@ -30,7 +30,7 @@ function roles(design) {
   const index = places.get(design), found = [];
   if (index === report.recommended) found.push('recommended');
   if (design === original) found.push('original');
-  report.objectives.forEach(o => { if (report.best[o.key] === index) found.push('lowest ' + o.label.toLowerCase()); });
+  report.objectives.forEach(o => { if (report.best[o.key] === index) found.push((o.sign < 0 ? 'highest ' : 'lowest ') + o.name.toLowerCase()); });
   if (design.front && !found.includes('recommended')) found.push('best compromise');
   return found;
 }
@@ -39,10 +39,13 @@ function roles(design) {
 const lacking = design => `<span title="${escaped(design.reason || 'not computed for this design')}">–</span>`;
 const below = (c, value) => known(c.floor) && known(value) && value < c.floor;
 
+/** Objective `k` of a design as people name it: what is maximized is stored with a minus. */
+const named = (design, k) => report.objectives[k].sign * design.f[k];
+
 /** Relative change of objective `k` from the original; null where either is unknown. */
 function change(design, k) {
   if (!original || design === original || !known(design.f[k]) || !original.f[k]) return null;
-  return (design.f[k] - original.f[k]) / Math.abs(original.f[k]);
+  return report.objectives[k].sign * (design.f[k] - original.f[k]) / Math.abs(original.f[k]);
 }
 
 const font = () => ({family: getComputedStyle(document.body).fontFamily, size: 12.5, color: color('muted')});

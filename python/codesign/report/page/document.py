@@ -61,10 +61,7 @@ def page_document(
             | ({"names": list(v.values)} if v.named else {})
             for v in run.variables
         ],
-        "objectives": [
-            {"key": o.key, "label": o.label, "unit": o.unit, "title": o.title, "view": run.view(k)}
-            for k, o in enumerate(run.objectives)
-        ],
+        "objectives": [_objective(o) | {"view": run.view(k)} for k, o in enumerate(run.objectives)],
         "constraints": [_constraint(run, key) for key in constraints],
         "parts": [{"key": name, "label": words(name)} for name in parts],
         "about": about,
@@ -83,6 +80,11 @@ def page_document(
         "command": run.export_command,
         "command_original": run.export_original,
     }
+
+
+def _objective(o: Quantity) -> dict[str, Any]:
+    """name, sign: of what is maximized, the number that people name is the negative of the one that is kept."""
+    return {"key": o.key, "label": o.label, "name": o.name, "sign": o.sign, "unit": o.unit, "title": o.title}
 
 
 def _row(

@@ -84,7 +84,9 @@ def _trade_offs(run: ReportData) -> Block:
         f"{CARD}</div>{ANNOUNCEMENT}"
     )
     third = " Color is the remaining objective." if len(run.objectives) > 2 else ""
-    text = f"Lower is better on both axes.{third} Click a design to see it; drag to zoom, double-click to zoom back."
+    raised = any(o.maximized for o in run.objectives)
+    better = "Lower is better on both axes" + (", where a maximized number has a minus before it" if raised else "")
+    text = f"{better}.{third} Click a design to see it; drag to zoom, double-click to zoom back."
     return _block("trade-offs", "Trade-offs", "Trade-offs", text, body, controls)
 
 

@@ -44,17 +44,18 @@ def _tiles(run: ReportData, validation: Validation | None) -> str:
 
 def _tile(run: ReportData, k: int, known: Evidence) -> str:
     assert run.recommended is not None
-    objective, here = run.objectives[k], run.values[run.recommended, k]
+    objective = run.objectives[k]
+    here = objective.sign * run.values[run.recommended, k]
     gain, baseline, unit = run.gain(run.recommended), run.baseline_vector, escape(objective.unit)
     if gain is None or baseline is None:
         big, change, trust = words.number(here), unit, ""
     else:
-        big = words.percent(gain[k])
-        change = f"{words.number(baseline[k])} → {words.number(here)} {unit}"
+        big = words.percent(objective.sign * gain[k])
+        change = f"{words.number(objective.sign * baseline[k])} → {words.number(here)} {unit}"
         trust = f"<p>{escape(known.text)}</p>"
     size = "big" if known.sense else "big open"
     return (
-        f'<div class="tile" title="{escape(objective.meaning)}"><dt>{escape(objective.label)}</dt>'
+        f'<div class="tile" title="{escape(objective.meaning)}"><dt>{escape(objective.name)}</dt>'
         f'<dd class="{size} {known.sense}">{big}</dd><dd><p>{change}</p>{trust}</dd></div>'
     )
 

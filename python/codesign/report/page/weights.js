@@ -24,7 +24,7 @@ function drawPreferred() {
   const sum = weights.reduce((s, w) => s + w, 0);
   weights.forEach((w, k) => { element(`weight-${k}-value`).textContent = sum ? `${Math.round(100 * w / sum)} %` : '–'; });
   if (!sum) { element('weights-choice').textContent = 'Give one of them a weight.'; return; }
-  const i = preferred(weights), gives = report.objectives.map((o, k) => `${escaped(o.label.toLowerCase())} ${number(designs[i].f[k])} ${escaped(o.unit)}`);
+  const i = preferred(weights), gives = report.objectives.map((o, k) => `${escaped(o.name.toLowerCase())} ${number(named(designs[i], k))} ${escaped(o.unit)}`);
   element('weights-choice').innerHTML = `<button type="button" class="link" data-select="${i}">${name(designs[i])}</button>${i === report.recommended ? ', the recommended one' : ''}: ${gives.join(', ')}`;
   ring(6, i);
 }
