@@ -18,6 +18,7 @@ from codesign.parts.load_case import part_case
 from codesign.parts.strength import confirming, part_document
 from codesign.problem.design_space import Design
 from codesign.problem.evaluation import Evaluation
+from codesign.problem.quantities import quantity, read
 
 if TYPE_CHECKING:
     from codesign.problem.protocols import PartCache
@@ -54,11 +55,25 @@ def evaluate_confirmed(study: StudyData, design: Design, cache: PartCache | None
 
 
 def with_confirmed(evaluation: Evaluation, confirmed: Mapping[str, Mapping[str, Any]]) -> Evaluation:
-    """An evaluation with the strength of its parts as confirmed; all else, and flown load cases, as they were."""
+    """An evaluation with the strength of its parts as confirmed, and so the safety factors among its constraints.
+
+    All else, and flown load cases, are as they were.
+    """
     parts = {
         name: _merged(part, confirmed[name]) if name in confirmed else part for name, part in evaluation.parts.items()
     }
-    return replace(evaluation, parts=parts)
+    return replace(evaluation, parts=parts, constraints={**evaluation.constraints, **_strength_of(evaluation, parts)})
+
+
+def _strength_of(evaluation: Evaluation, parts: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+    """The safety factors among an evaluation's constraints, read from these parts."""
+    found = {}
+    for key in evaluation.constraints:
+        path = quantity(key).path
+        if path.startswith(("parts.", "min(parts.")) and path.rstrip(")").endswith(".safety_factor"):
+            value = read({"parts": parts}, path)
+            found |= {} if value is None else {key: value}
+    return found
 
 
 def _merged(part: Mapping[str, Any], confirmed: Mapping[str, Any]) -> dict[str, Any]:

@@ -70,10 +70,11 @@ def run_verdict(run: ReportData, position: int, evaluation: Evaluation | None = 
     further = (
         [text for text in (unsettled_search(run), passed_over(run)) if text] if position == run.recommended else []
     )
-    notes = [*run.notes, *watch(evaluation or entry.evaluation)]
+    notes = list(run.notes)
     tried = run.confirmed.get(tuple(entry.evaluation.design.values()))
     if tried is not None and not tried.parts:
         notes.append(f"Its parts could not be confirmed on a finer mesh: {tried.reason}.")
+    notes += watch(evaluation or entry.evaluation)
     if run.recommended is None:
         notes.append("The report recommends no design of this run.")
     elif position != run.recommended:

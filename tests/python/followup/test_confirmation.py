@@ -145,3 +145,11 @@ def test_parts_are_refined_at_the_peak_and_known_the_second_time() -> None:
     assert strut["tolerance_reached"] == (strut["stopped"] is None)
     kept.update({key: value | {"mass": 7.0} for key, value in kept.items()})
     assert study.evaluate(design, trajectory=CONFIRMED, cache=Cache()).parts["strut"]["mass"] == 7.0  # type: ignore[arg-type]
+
+
+def test_safety_factors_among_the_constraints_are_those_confirmed():
+    part = {**strength(12.0, 0.05), "mass": 1.0, "load_case": "load"}
+    design = Evaluation({}, "feasible", parts={"rod": part}, constraints={"safety_factor": 12.0, "tracking": 0.1})
+    found = with_confirmed(design, {"rod": strength(11.0, 0.03)})
+    assert found.constraints == {"safety_factor": 11.0, "tracking": 0.1}
+    assert design.constraints["safety_factor"] == 12.0

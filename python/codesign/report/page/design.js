@@ -51,17 +51,23 @@ function drawParts(i) {
   const cards = report.parts.map((part, k) => {
     const values = d.p[k];
     if (!values) return '';
-    const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd>${before(d, k, n, factor, digits)}</div>`);
+    const facts = PART_FACTS.map(([label, unit, digits, factor], n) => !known(values[n]) ? '' : `<div><dt>${label}</dt><dd>${withUnit(number(values[n] * factor, digits), unit)}</dd>${searched(d, k, n, factor, digits)}${before(d, k, n, factor, digits)}</div>`);
     const strength = (d.s[k] || []).map(text => `<p class="count">${escaped(text)}.</p>`).join('');
     const made = report.about[d.about]?.[k] || {};
     const about = strength + [made.material, made.load && `Load: ${made.load}`].filter(Boolean).map(text => `<p class="count">${escaped(text)}.</p>`).join('') + (made.warning ? `<p class="count bad">${escaped(made.warning)}</p>` : '');
-    const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, colored by stress; drag to turn"></div>${stressScale(detail.parts[part.key])}` : '';
+    const view = detail && detail.parts[part.key] ? `<div class="solid" id="solid-${k}" role="img" aria-label="${escaped(part.label)} of ${name(d)}, colored by stress; drag to turn"></div>${stressScale(detail.parts[part.key])}${d.searched ? '<p class="count">Colors are those of the mesh of the search; the numbers are of the finer one.</p>' : ''}` : '';
     return `<article class="part"><h3>${escaped(part.label)}</h3>${view}<dl class="facts">${facts.join('')}</dl>${about}</article>`;
   });
   document.querySelectorAll('.solid').forEach(node => window.Plotly?.purge(node));
   box.innerHTML = cards.join('') || '<p class="absent">No part was built for this design.</p>';
   element('parts-absent').innerHTML = detail || !cards.join('') ? '' : absent('The 3-D view with stress and the flight histories are');
   report.parts.forEach((part, k) => whenVisible(element(`solid-${k}`), node => drawSolid(node, detail.parts[part.key])));
+}
+
+/** The number that the search had, where a finer mesh has confirmed another. */
+function searched(d, k, n, factor, digits) {
+  const was = d.searched?.[k]?.[n];
+  return known(was) && was !== d.p[k][n] ? `<dd class="was">in the search ${number(was * factor, digits)}</dd>` : '';
 }
 
 /** The same number of the original's part, and the change from it. */

@@ -95,24 +95,35 @@ def _row(
     files: dict[str, Any],
     told: bool = True,
 ) -> dict[str, Any]:
-    """A design; told: its strength in words too, which thousands of designs have no room for."""
-    key = detail_key(evaluation)
+    """A design, its parts as confirmed; told: its strength in words too, for which thousands of designs have no room."""
+    key, searched = detail_key(evaluation), evaluation
+    evaluation = run.as_confirmed(evaluation)
     row: dict[str, Any] = {
         "x": [evaluation.design[v.name] for v in run.variables],
         "status": STATUS[evaluation.status],
         "reason": evaluation.reason,
         "f": [_rounded(value) for value in run.vector(evaluation)],
         "c": [_shown(quantity(k), evaluation.constraints) for k in constraints],
-        "g": [_rounded(evaluation.violations.get(k, 0.0)) for k in constraints],
+        "g": [_rounded(_violation(run, evaluation, k)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
         "s": [_strength(run, evaluation, name) for name in parts] if told else [],
         "about": [_about(run, evaluation, name) for name in parts] if told else None,
         "fl": [_shown(quantity, evaluation.flight) for quantity in FLIGHT_FACTS],
         "detail": key,
     }
+    if evaluation is not searched:
+        row["searched"] = [_part(searched.parts[name]) if name in searched.parts else None for name in parts]
     if key in files:
         row["files"] = files[key]
     return row
+
+
+def _violation(run: ReportData, evaluation: Evaluation, key: str) -> float:
+    """As judged, or of a confirmed number that misses its limit, relative to it."""
+    sign, limit = run.demanded(evaluation).get(key, ("", 0.0))
+    if evaluation.violations.get(key) or sign != ">=" or not limit:
+        return evaluation.violations.get(key, 0.0)
+    return max(0.0, (limit - evaluation.constraints.get(key, limit)) / abs(limit))
 
 
 def _part(numbers: dict[str, Any]) -> list[float | None]:
