@@ -95,7 +95,7 @@ def _row(
     files: dict[str, Any],
     told: bool = True,
 ) -> dict[str, Any]:
-    """A design, its parts as confirmed; told: its strength in words too, for which thousands of designs have no room."""
+    """A design, its parts as confirmed; told: its strength in words, for which thousands of designs have no room."""
     key, searched = detail_key(evaluation), evaluation
     evaluation = run.as_confirmed(evaluation)
     row: dict[str, Any] = {
