@@ -67,7 +67,7 @@ def with_confirmed(evaluation: Evaluation, confirmed: Mapping[str, Mapping[str, 
 
 def _strength_of(evaluation: Evaluation, parts: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
     """The safety factors among an evaluation's constraints, read from these parts."""
-    found = {}
+    found: dict[str, float] = {}
     for key in evaluation.constraints:
         path = quantity(key).path
         if path.startswith(("parts.", "min(parts.")) and path.rstrip(")").endswith(".safety_factor"):

@@ -10,6 +10,7 @@ from pathlib import Path
 import msgspec
 
 from codesign.errors import StudyError
+from codesign.parts.materials import material_names
 from codesign.parts.part import Part
 from codesign.problem.identity import Identity
 from codesign.robot.description import RobotDescription
@@ -50,7 +51,20 @@ def find_problems(source: str | Path) -> list[str]:
     found += _own_functions(config, path)
     named = chain(reference_problems(config, part_classes), flight_problems(config))
     found += [_line(path, problem) for problem in named if not lost or _stands(problem, lost)]
-    return list(dict.fromkeys([*found, *_deeper_problems(read.raw, path, config, part_classes, lost, not found)]))
+    raw, judged = _with_known_materials(read.raw, config, path)
+    return list(dict.fromkeys([*found, *_deeper_problems(raw, path, judged, part_classes, lost, not found)]))
+
+
+def _with_known_materials(raw: RawStudy, config: StudyConfig, path: Path) -> tuple[RawStudy, StudyConfig]:
+    """A study whose parts of an unknown material are of another one: faces do not depend on it."""
+    unknown = {part.name for part in config.parts if part.material not in config.materials}
+    if not unknown:
+        return raw, config
+    other = {"material": material_names()[0]}
+    parts = [part | other if part.get("name") in unknown else part for part in raw["parts"]]
+    known = {part.name for part in config.parts}
+    made = convert({**raw, "parts": parts}, path)
+    return {**raw, "parts": parts}, msgspec.structs.replace(made, parts=[p for p in made.parts if p.name in known])
 
 
 def _deeper_problems(

@@ -142,7 +142,8 @@ def _nearest_numbers(config: StudyConfig, name: str) -> str:
         like.set_seq1(known)
         return -like.ratio(), known
 
-    ranked = sorted(own | flown | of_parts, key=likeness)
+    had = (known for known in own | flown | of_parts if _missing_number(config, known) is None)
+    ranked = sorted(had, key=likeness)
     found = closest(name, ranked)
     meant = f"did you mean {found!r}? " if found else ""
     return f"{meant}nearest of those that this study has: {', '.join(ranked[:MOST_NUMBERS])}"
