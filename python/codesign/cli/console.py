@@ -94,10 +94,12 @@ def print_verdict(verdict: Mapping[str, Any], only_reasons: bool = False) -> Non
     if verdict["may_be_built"]:
         if not only_reasons:
             out.print(Text.assemble((verdict["title"], "bold green"), ": nothing that was checked speaks against it"))
+            for text in verdict["notes"]:
+                out.print(text, soft_wrap=True)
         return
     head = "not to be built" if verdict["kind"] == "barred" else "not to be built yet"
     out.print(Text.assemble((head, "bold yellow"), ": ", " ".join(verdict["reasons"])), soft_wrap=True)
-    for text in verdict["remedies"]:
+    for text in (*verdict["remedies"], *([] if only_reasons else verdict["notes"])):
         out.print(text, soft_wrap=True)
 
 
