@@ -101,6 +101,7 @@ coverage: $(VENV)/test.stamp
 	$(BIN)/python scripts/cpp_coverage.py build/coverage
 
 lock: $(VENV)/test.stamp
+	$(BIN)/python -m pip install --requirement <($(BIN)/python scripts/dependencies.py docs) # versions that suit both
 	scripts/lock > build/constraints.txt
 	mv build/constraints.txt constraints.txt
 
