@@ -4,9 +4,9 @@ Momentum theory and the similarity of propellers: a propeller of diameter D at n
 T = c_T ρ n² D⁴ and takes the power P = c_P ρ n³ D⁵, so its drag torque is Q = P / (2π n) = c_P / (2π c_T) D T. The
 ideal power is T √(T / (2 ρ A)), A the disk; over the figure of merit it is P, so c_P = √(2/π) c_T^1.5 / FM. The
 coefficients are assumed, of the size known of small two-blade propellers at rest (see J. B. Brandt and M. S. Selig,
-"Propeller Performance Data at Low Reynolds Numbers", AIAA 2011-1255): put in those of yours. All motors reach the same largest
-thrust, so larger propellers turn slower and need more torque; a motor's mass goes with its torque, a propeller's with
-its volume, and the lengths of both with the diameter, as the robot's rotors are drawn.
+"Propeller Performance Data at Low Reynolds Numbers", AIAA 2011-1255): put in those of yours. All motors reach the
+same largest thrust, so larger propellers turn slower and need more torque; a motor's mass goes with its torque, a
+propeller's with its volume, and the lengths of both with the diameter, as the robot's rotors are drawn.
 """
 
 from __future__ import annotations
