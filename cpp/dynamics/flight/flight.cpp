@@ -35,7 +35,7 @@ class Flight {
 
  private:
   FailureReason advance_plant(int k);
-  bool move(bool held, const PairedBodies* moved);
+  bool move(bool held);
   void advance_jets(int k);
   bool update_dynamics();
   FailureReason control(int k);
@@ -131,7 +131,9 @@ FailureReason Flight::advance_plant(int k) {
   for (int i = 0; i < settings_.torque_updates; ++i) {
     const bool held = i > 0 && bodies_;
     if (i > 0) {
-      if (!held) {
+      if (held) {
+        bodies_->move(state_.base.R, state_.joints, state_.velocity);
+      } else {
         update_motion_terms(model_, state_, terms_);
         if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return FailureReason::kSingularMass;
       }
@@ -139,19 +141,18 @@ FailureReason Flight::advance_plant(int k) {
       if (reason != FailureReason::kNotFailed) return reason;
     }
     inputs_.base_force = gusts_.at(k > 0 ? start + (i + 0.5) * torque_period_ : start);
-    const PairedBodies* moved = held && k > 0 ? &*bodies_ : nullptr;  // by the torques
-    if (!move(held, moved)) return FailureReason::kSingularMass;
+    if (!move(held)) return FailureReason::kSingularMass;
   }
   return plant_.fuel_left() < 0.0 ? FailureReason::kNoFuel : FailureReason::kNotFailed;
 }
 
-// By one period of the torque loop. Held: terms_ are of an earlier state. moved: bodies at state_.
-bool Flight::move(bool held, const PairedBodies* moved) {
+// By one period of the torque loop. Held: terms_ are of an earlier state, bodies_ of this one.
+bool Flight::move(bool held) {
   if (own_plant_) {
     own_plant_(inputs_, torque_period_, state_);
     return true;
   }
-  return held ? plant_.advance(inputs_, state_, moved)
+  return held ? plant_.advance(inputs_, state_, &*bodies_)
               : plant_.advance(terms_, joint_space_, inputs_, state_);
 }
 
@@ -208,7 +209,6 @@ FailureReason Flight::control(int k) {
 // joint-space inertia of the sample.
 FailureReason Flight::update_torque(bool held) {
   if (held) {
-    bodies_->move(state_.base.R, state_.joints, state_.velocity);
     push_jets(mounts_, thrust_, *bodies_);
     bodies_->generalized_forces(force_);
   } else {

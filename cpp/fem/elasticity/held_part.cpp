@@ -40,8 +40,8 @@ PeakStress read_peak(const HeldPart& part, const PointStresses& points, const Ex
 void read_stress(const HeldPart& part, const std::vector<int>& loaded, const Eigen::VectorXd& u,
                  StaticResult& r) {
   const PointStresses points = point_stresses(part.mesh, part.material, u);
-  r.stress = recover_stress(part.mesh, points);
-  const CornerStress corners = corner_stress(part.mesh, part.material, u);
+  r.stress = recover_stress(part.mesh, part.places, points);
+  const CornerStress corners = corner_stress(part.mesh, part.places, part.material, u);
   r.stress(corners.nodes, Eigen::all) = corners.stress;
   r.von_mises = von_mises(r.stress);
   const ExclusionZone zone = exclusion_zone(part, loaded);
@@ -54,7 +54,7 @@ void read_stress(const HeldPart& part, const std::vector<int>& loaded, const Eig
   r.exclusion_smallest = zone.smallest();
   r.exclusion_largest = zone.largest();
   RecoveryError recovery = recovery_error(part.mesh, part.material, u, r.stress);
-  r.stress_error = peak_stress_error(part.mesh, points, recovery, peak);
+  r.stress_error = peak_stress_error(part.mesh, part.places, points, recovery, peak);
   r.energy_error = recovery.relative_energy;
   r.element_error = std::move(recovery.element);
   r.peak_stress = peak.value;

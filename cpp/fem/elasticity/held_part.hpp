@@ -8,6 +8,7 @@
 #include "fem/elasticity/static_solver.hpp"
 #include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
+#include "fem/stress/body_edges.hpp"
 #include "fem/stress/exclusion.hpp"
 
 namespace codesign::fem {
@@ -20,7 +21,8 @@ struct HeldPart {
   std::vector<RemoteMass> masses;
   StaticSettings settings;
   Constraints constraints;
-  std::vector<int> clamped;  // boundary triangles
+  std::vector<int> clamped;       // boundary triangles
+  std::vector<BodyPlace> places;  // of the nodes
 };
 
 // Where the peak stress is not read if these triangles are loaded.

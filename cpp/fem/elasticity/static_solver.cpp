@@ -153,6 +153,7 @@ StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support>
   held->constraints = constrain(held->mesh, held->supports);
   require_held(held->mesh, held->constraints);
   held->clamped = clamped_triangles(held->mesh, held->supports);
+  held->places = body_places(held->mesh);
   d.part = held;
   d.pattern = order_nodes(held->mesh, held->constraints);
   if (d.pattern.equations() == 0) return;

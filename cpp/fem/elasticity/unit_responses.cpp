@@ -19,9 +19,10 @@ StressFields recovered(const HeldPart& part, const Eigen::MatrixXd& displacement
     points.middleCols<6>(6 * u) =
         point_stresses(part.mesh, part.material, displacement.col(u)).stress;
   }
-  StressFields nodal = recover_fields(part.mesh, points);
+  StressFields nodal = recover_fields(part.mesh, part.places, points);
   for (Eigen::Index u = 0; u < displacement.cols(); ++u) {
-    const CornerStress corners = corner_stress(part.mesh, part.material, displacement.col(u));
+    const CornerStress corners =
+        corner_stress(part.mesh, part.places, part.material, displacement.col(u));
     nodal(corners.nodes, Eigen::seqN(6 * u, 6)) = corners.stress;
   }
   return nodal;

@@ -39,9 +39,14 @@ std::vector<BodyPlace> body_places(const TetMesh& mesh) {
       for (const int column : {k, (k + 1) % 3, 3 + k}) ++edges[at(mesh.boundary(t, column))];
     }
   }
+  std::vector<int> uses(edges.size(), 0);  // as a corner of elements
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    for (int k = 0; k < 4; ++k) ++uses[at(mesh.tets(e, k))];
+  }
   std::vector<BodyPlace> places(edges.size(), BodyPlace::smooth);
   for (std::size_t n = 0; n < edges.size(); ++n) {
-    if (edges[n] > 0) places[n] = edges[n] > 2 ? BodyPlace::corner : BodyPlace::edge;
+    if (edges[n] > 0) places[n] = BodyPlace::edge;
+    if (edges[n] > 2) places[n] = uses[n] == 1 ? BodyPlace::tip : BodyPlace::corner;
   }
   return places;
 }

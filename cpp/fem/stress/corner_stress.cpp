@@ -2,9 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "fem/mesh/incidence.hpp"
 #include "fem/mesh/tet10.hpp"
-#include "fem/stress/body_edges.hpp"
 
 namespace codesign::fem {
 
@@ -24,25 +22,21 @@ Eigen::Matrix3d gradient_at(const TetMesh& mesh, int element, int corner,
 
 }  // namespace
 
-CornerStress corner_stress(const TetMesh& mesh, const Material& material,
-                           const Eigen::VectorXd& displacement) {
+CornerStress corner_stress(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                           const Material& material, const Eigen::VectorXd& displacement) {
   const double lambda = lame_lambda(material), mu = shear_modulus(material);
-  const std::vector<BodyPlace> places = body_places(mesh);
-  const Incidence incidence = elements_of_nodes(mesh, 4);
   CornerStress result;
-  std::vector<int> elements;
-  for (int n = 0; n < mesh.nodes.rows(); ++n) {
-    const int first = incidence.start[at(n)];
-    if (places[at(n)] != BodyPlace::corner || incidence.start[at(n) + 1] != first + 1) continue;
-    result.nodes.push_back(n);
-    elements.push_back(incidence.element[at(first)]);
+  std::vector<Voigt> stress;
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    for (int corner = 0; corner < 4; ++corner) {
+      if (places[at(mesh.tets(e, corner))] != BodyPlace::tip) continue;
+      result.nodes.push_back(mesh.tets(e, corner));
+      stress.push_back(stress_of_gradient(lambda, mu, gradient_at(mesh, e, corner, displacement)));
+    }
   }
-  result.stress.resize(static_cast<Eigen::Index>(elements.size()), 6);
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    int corner = 0;
-    while (mesh.tets(elements[i], corner) != result.nodes[i]) ++corner;
-    const Eigen::Matrix3d h = gradient_at(mesh, elements[i], corner, displacement);
-    result.stress.row(static_cast<Eigen::Index>(i)) = stress_of_gradient(lambda, mu, h).transpose();
+  result.stress.resize(static_cast<Eigen::Index>(stress.size()), 6);
+  for (std::size_t i = 0; i < stress.size(); ++i) {
+    result.stress.row(static_cast<Eigen::Index>(i)) = stress[i].transpose();
   }
   return result;
 }

@@ -187,14 +187,15 @@ VolumeStress volume_stress(const TetMesh& mesh, const Stresses& nodal, const Poi
   return result;
 }
 
-double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
-                         const RecoveryError& recovery, const PeakStress& peak) {
+double peak_stress_error(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                         const PointStresses& points, const RecoveryError& recovery,
+                         const PeakStress& peak) {
   constexpr double kShare = 0.4, kFloor = 0.03, kSlope = 0.5, kCoarse = 23.0;
   if (!(peak.value > 0)) return 0.0;
   const double largest = largest_error_around(mesh, recovery, peak);
-  const double spread = peak.triangle < 0
-                            ? recovery_spread_inside(mesh, points, peak.element, peak.position)
-                            : recovery_spread(mesh, points, peak.triangle, peak.reference);
+  const double spread =
+      peak.triangle < 0 ? recovery_spread_inside(mesh, places, points, peak.element, peak.position)
+                        : recovery_spread(mesh, places, points, peak.triangle, peak.reference);
   const double x = (spread + kShare * largest) / peak.value;
   return (std::sqrt(kFloor * kFloor + kSlope * kSlope * x * x) + kCoarse * x * x * x) * peak.value;
 }

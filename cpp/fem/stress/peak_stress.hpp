@@ -74,7 +74,8 @@ VolumeStress volume_stress(const TetMesh& mesh, const Stresses& nodal, const Poi
 // (docs/fem.md): sqrt(3 %² + (x / 2)²) + 23 x³. The first term is the noise of a largest of many
 // values, the last one counts where elements are too coarse for x to be proportional to the error.
 // An estimate, not a bound.
-double peak_stress_error(const TetMesh& mesh, const PointStresses& points,
-                         const RecoveryError& recovery, const PeakStress& peak);
+double peak_stress_error(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                         const PointStresses& points, const RecoveryError& recovery,
+                         const PeakStress& peak);
 
 }  // namespace codesign::fem

@@ -8,7 +8,6 @@
 
 #include "fem/mesh/incidence.hpp"
 #include "fem/mesh/tet10.hpp"
-#include "fem/stress/body_edges.hpp"
 #include "interrupt.hpp"
 
 namespace codesign::fem {
@@ -240,9 +239,9 @@ PatchField<Columns> fit_around(const TetMesh& mesh, int corner, BodyPlace place,
 }
 
 template <int Columns>
-Fields<Columns> recover(const TetMesh& mesh, const Fields<Columns>& stress) {
+Fields<Columns> recover(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                        const Fields<Columns>& stress) {
   const Points x = stress_points(mesh);
-  const std::vector<BodyPlace> places = body_places(mesh);
   PatchFinder finder(mesh);
   const int nodes = static_cast<int>(mesh.nodes.rows());
   Fields<Columns> sum = Fields<Columns>::Zero(nodes, stress.cols());
@@ -274,18 +273,20 @@ Fields<Columns> recover(const TetMesh& mesh, const Fields<Columns>& stress) {
 
 }  // namespace
 
-Stresses recover_stress(const TetMesh& mesh, const PointStresses& points) {
-  return recover<6>(mesh, points.stress);
+Stresses recover_stress(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                        const PointStresses& points) {
+  return recover<6>(mesh, places, points.stress);
 }
 
-StressFields recover_fields(const TetMesh& mesh, const StressFields& points) {
-  return recover<Eigen::Dynamic>(mesh, points);
+StressFields recover_fields(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                            const StressFields& points) {
+  return recover<Eigen::Dynamic>(mesh, places, points);
 }
 
-double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,
+double recovery_spread(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                       const PointStresses& points, int triangle,
                        const Eigen::Vector2d& reference) {
   const Points x = stress_points(mesh);
-  const std::vector<BodyPlace> places = body_places(mesh);
   PatchFinder finder(mesh);
   const FaceNodes nodes = face_nodes(mesh, triangle);
   Eigen::Matrix<double, 6, 6> smooth = Eigen::Matrix<double, 6, 6>::Zero(), sharp = smooth;
@@ -305,10 +306,10 @@ double recovery_spread(const TetMesh& mesh, const PointStresses& points, int tri
                   von_mises(Voigt(smooth.transpose() * values)));
 }
 
-double recovery_spread_inside(const TetMesh& mesh, const PointStresses& points, int element,
+double recovery_spread_inside(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                              const PointStresses& points, int element,
                               const Eigen::Vector3d& position) {
   const Points x = stress_points(mesh);
-  const std::vector<BodyPlace> places = body_places(mesh);
   PatchFinder finder(mesh);
   Voigt smooth = Voigt::Zero(), sharp = smooth;
   for (int k = 0; k < 4; ++k) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
+#include "fem/stress/body_edges.hpp"
 #include "fem/stress/stress.hpp"
 
 namespace codesign::fem {
@@ -20,20 +22,23 @@ namespace codesign::fem {
 // equilibrium as a condition on the fit as in Ródenas et al. 2007 (SPR-C), here for any load.
 // Measured on notches and on a thick cylinder (docs/fem.md): third order where averaged element
 // stresses have second.
-Stresses recover_stress(const TetMesh& mesh, const PointStresses& points);
+Stresses recover_stress(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                        const PointStresses& points);
 
 // The same of any number of fields side by side, six columns each: at the points of PointStresses,
 // and recovered at the nodes.
 using StressFields = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-StressFields recover_fields(const TetMesh& mesh, const StressFields& points);
+StressFields recover_fields(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                            const StressFields& points);
 
 // How much the von Mises stress (Pa) at a point of a boundary face depends on the recovery: the
 // difference between a fit that trusts near points more and one that smooths more.
-double recovery_spread(const TetMesh& mesh, const PointStresses& points, int triangle,
-                       const Eigen::Vector2d& reference);
+double recovery_spread(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                       const PointStresses& points, int triangle, const Eigen::Vector2d& reference);
 
 // The same at a point (m) inside an element, where the fits around its four corners are averaged.
-double recovery_spread_inside(const TetMesh& mesh, const PointStresses& points, int element,
+double recovery_spread_inside(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                              const PointStresses& points, int element,
                               const Eigen::Vector3d& position);
 
 // How far the finite-element stress is from the recovered one.

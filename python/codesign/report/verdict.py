@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
 from codesign.report.data import ReportData
 from codesign.report.objections import UNSETTLED, Objection, objections
@@ -16,10 +17,9 @@ from codesign.report.recommendation import passed_over, unsettled_search
 TITLES = {"build": "Build {}", "candidate": "Candidate: {}", "barred": "{}"}
 HEADS = {"build": "", "candidate": "Not to be built yet", "barred": "Not to be built"}
 FINER = 'a finer mesh, [fem] accuracy = "fine" or a smaller edge_length_mm in study.toml'
-
 OFTEN = 0.01  # share of the time at a limit from which on it is said
 UNCHECKED = "Whether bodies collide was not checked: the study has no section [interference]."
-ENDS = (("thrust_at_most", "largest", max), ("thrust_at_least", "smallest", min))
+ENDS = (("thrust_at_most", "largest", "max_thrust"), ("thrust_at_least", "smallest", "min_thrust"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ def study_verdict(study: Any, evaluation: Evaluation) -> Verdict:
     """The verdict on a design that is of no run."""
     config = study.configured(evaluation.design)
     against = objections(evaluation, demands(config), None, config.fem.tolerance)
-    values = " ".join(f"--set {name}={value}" for name, value in evaluation.design.items())
+    values = " ".join(f"--set {name}={value_text(value)}" for name, value in evaluation.design.items())
     command = f"codesign evaluate --study {study.source} {values} --confirm"
     notes = ["Its values were given, not found by a search: whether others are better is not known."]
     notes += watch(evaluation)
@@ -134,7 +134,7 @@ def _at_limits(flight: dict[str, Any]) -> list[str]:
         share = shares.get(key, 0.0)
         if share <= OFTEN:
             continue
-        reached = flight.get("max_thrust" if extreme is max else "min_thrust")
+        reached = flight.get(extreme)
         told = f" (it reached {reached:.3g}\u202fN)" if reached is not None else ""
         found.append(
             f"For {100 * share:.2g}\u202f% of the flight a thrust is within 1\u202f% of its range of the {end} that is "

@@ -106,9 +106,7 @@ def _scaled(robot: RobotDescription, link: str, factor: float) -> RobotDescripti
             geometry = shape.find("geometry")
             for solid in geometry if geometry is not None else ():
                 if solid.tag == "mesh":
-                    solid.set(
-                        "scale", number_text([factor * float(x) for x in str(solid.get("scale", "1 1 1")).split()])
-                    )
+                    solid.set("scale", solid.get("scale", "1 1 1"))
                 for name in ("size", "radius", "length", "scale"):
                     if text := solid.get(name):
                         solid.set(name, number_text([factor * float(x) for x in text.split()]))

@@ -97,6 +97,16 @@ def test_a_scaled_link_is_a_similar_body():
         np.testing.assert_allclose(larger.joint_origin(joint)[:3, 3], factor * robot.joint_origin(joint)[:3, 3])
 
 
+@pytest.mark.parametrize(
+    ("written", "scale"), [("", "1.5 1.5 1.5"), ('scale="0.001 0.001 0.002"', "0.0015 0.0015 0.003")]
+)
+def test_meshes_of_a_scaled_link_are_scaled_once(written, scale):
+    shape = f'<geometry><mesh filename="a.stl" {written}/></geometry>'
+    robot = RobotDescription.from_text(f'<robot name="r"><link name="a"><visual>{shape}</visual></link></robot>')
+    change = RobotChange(variable="size", link="a", reference_mm=100.0)
+    assert f'scale="{scale}"' in change_robot(robot, [change], {"size": 150.0}).to_text()
+
+
 def test_a_change_says_what_it_is():
     for wrong, why in (
         ({"joint": "a", "reference_mm": 3.0}, "scales a link"),

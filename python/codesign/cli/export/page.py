@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -17,7 +18,7 @@ from codesign.parts.component import distinct_parts
 from codesign.parts.part import MirroredPart, Part
 from codesign.problem.design_space import value_text
 from codesign.problem.evaluation import Evaluation
-from codesign.report.data import PartWords
+from codesign.report.data import Limits, PartWords
 from codesign.report.objections import COMFORT
 from codesign.report.reading import demands
 from codesign.report.strength import CaseStrength, case_strengths, frequency_words
@@ -117,13 +118,17 @@ class OrderPage:
             ]
         )
 
-    @property
+    @cached_property
     def _config(self) -> StudyConfig:
         return self.order.study.configured(self.order.design)
 
-    @property
+    @cached_property
     def _words(self) -> dict[str, PartWords]:
         return part_words(self._config)
+
+    @cached_property
+    def _limits(self) -> Limits:
+        return demands(self._config)
 
     def _head(self) -> list[str]:
         order, study = self.order, self.order.study
@@ -173,7 +178,7 @@ class OrderPage:
         return rows
 
     def _cases(self, name: str, part: Mapping[str, Any]) -> list[CaseStrength]:
-        return case_strengths(name, part, demands(self._config)) if part else []
+        return case_strengths(name, part, self._limits) if part else []
 
     def _case_row(self, name: str, case: CaseStrength, how: str) -> list[Any]:
         factor = "not stressed" if case.factor is None else f"{case.factor:.3g}"
@@ -194,7 +199,7 @@ class OrderPage:
             words = self._words[name]
             model = f"; analyzed: {self.models[name]}" if name in self.models else ""
             lines.append(f"- {name}: {words.held}{model}." + (f" It carries {words.carried}." if words.carried else ""))
-            frequency = frequency_words(name, part, demands(self._config), words.carried)
+            frequency = frequency_words(name, part, self._limits, words.carried)
             place = next((case.place for case in self._cases(name, part) if case.decides), "")
             lines += [f"- {text[:1].upper()}{text[1:]}." for text in (frequency, place) if text]
         tolerance = f"{100 * self.order.study.config.fem.tolerance:g}\u202f%"
@@ -205,7 +210,7 @@ class OrderPage:
         return [*lines, ""] if self.evaluation.parts else []
 
     def _part(self, part: Part) -> dict[str, Any]:
-        config = self.order.study.configured(self.order.design)
+        config = self._config
         settings, original = self.order.config_of(part), original_of(part)
         numbers = self.evaluation.parts.get(original.name, {})
         confirmed = self.confirmed.get(original.name, {})

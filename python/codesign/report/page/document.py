@@ -131,8 +131,8 @@ def _part(numbers: dict[str, Any]) -> list[float | None]:
 
 
 def _strength(run: ReportData, evaluation: Evaluation, name: str) -> list[str]:
-    """Load cases, frequency and deciding place of a part in words, as confirmed where it is."""
-    part, known = run.as_confirmed(evaluation).parts.get(name), run.describe(evaluation.design).parts.get(name)
+    """Load cases, frequency and deciding place of a part in words."""
+    part, known = evaluation.parts.get(name), run.describe(evaluation.design).parts.get(name)
     return strength_words(name, part, run.demanded(evaluation), known.carried if known else "") if part else []
 
 

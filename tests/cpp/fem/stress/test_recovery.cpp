@@ -40,7 +40,7 @@ TEST(Recovery, ReproducesAQuadraticStressFromItsPointValues) {
       points.stress.row(4 * e + q) = quadratic_stress(x).transpose();
     }
   }
-  const Stresses recovered = recover_stress(mesh, points);
+  const Stresses recovered = recover_stress(mesh, body_places(mesh), points);
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) {
     const Voigt exact = quadratic_stress(mesh.nodes.row(n).transpose());
     EXPECT_LT((recovered.row(n).transpose() - exact).norm(), 1e-5);
@@ -57,7 +57,7 @@ TEST(CornerStress, IsThatOfTheOnlyElementThere) {
   for (Eigen::Index i = 0; i < u.size(); ++i) {
     u[i] = 1e-3 * std::sin(1.0 + 7.0 * static_cast<double>(i));  // any
   }
-  const CornerStress found = corner_stress(mesh, kMaterial, u);
+  const CornerStress found = corner_stress(mesh, body_places(mesh), kMaterial, u);
   ASSERT_EQ(found.nodes, (std::vector{0, 4}));
   const Stresses points = point_stresses(mesh, kMaterial, u).stress;
   const double others = tet_rule_4().points[0][0], own = 1.0 - 3.0 * others;
@@ -94,7 +94,7 @@ TEST(Recovery, GivesTheStressOfASingleElement) {
   const TetMesh mesh = make_tet_mesh(nodes, tets);
   PointStresses points;
   points.stress = Stresses::Constant(4, 6, 7.0);
-  const Stresses recovered = recover_stress(mesh, points);
+  const Stresses recovered = recover_stress(mesh, body_places(mesh), points);
   EXPECT_LT((recovered.array() - 7.0).abs().maxCoeff(), 1e-9);
 }
 
@@ -104,6 +104,7 @@ TEST(Recovery, ErrorIsZeroForALinearDisplacement) {
   for (Eigen::Index n = 0; n < mesh.nodes.rows(); ++n) {
     u.segment<3>(3 * n) = 1e-3 * Vector3d(mesh.nodes(n, 0), mesh.nodes(n, 2), 0.0);
   }
-  const Stresses recovered = recover_stress(mesh, point_stresses(mesh, kMaterial, u));
+  const Stresses recovered =
+      recover_stress(mesh, body_places(mesh), point_stresses(mesh, kMaterial, u));
   EXPECT_LT(recovery_error(mesh, kMaterial, u, recovered).relative_energy, 1e-9);
 }
