@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -130,8 +131,21 @@ class PatchFinder {
 constexpr int kQuadratic[3][3] = {{4, 7, 9}, {7, 5, 8}, {9, 8, 6}};
 constexpr int kComponent[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
-// The second derivative of a quadratic along two axes over the coefficient of their term.
-double second_derivative(int j, int k) { return j == k ? 2.0 : 1.0; }
+// A term of a condition below: what it multiplies, and by what (of x² the second derivative is 2).
+struct BalanceTerm {
+  int component, quadratic;
+  double factor;
+};
+
+// ∂ₖ of line i of div σ of a quadratic stress, k and i in `condition`: its three terms.
+std::array<BalanceTerm, 3> balance_terms(int condition) {
+  const int i = condition / 3, k = condition % 3;
+  std::array<BalanceTerm, 3> terms;
+  for (int j = 0; j < 3; ++j) {
+    terms[at(j)] = {kComponent[i][j], kQuadratic[j][k], j == k ? 2.0 : 1.0};
+  }
+  return terms;
+}
 
 // Moves fits to the nearest ones, in the norm of their least squares (shears count twice, as they
 // stand in the tensor: the result turns with the axes), with one body force over the whole patch:
@@ -140,28 +154,43 @@ double second_derivative(int j, int k) { return j == k ? 2.0 : 1.0; }
 template <int Columns>
 void balance(const Eigen::LDLT<Eigen::Matrix<double, 10, 10>>& factor,
              Coefficients<Columns>& coefficients) {
-  using Conditions = Eigen::Matrix<double, 9, 9>;
-  const Eigen::Matrix<double, 10, 10> inverse =
-      factor.solve(Eigen::Matrix<double, 10, 10>::Identity());
-  Eigen::Matrix<double, 9, 60> rows = Eigen::Matrix<double, 9, 60>::Zero();  // component by basis
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      for (int j = 0; j < 3; ++j) {
-        rows(3 * i + k, 10 * kComponent[i][j] + kQuadratic[j][k]) = second_derivative(j, k);
+  static const std::array<std::array<BalanceTerm, 3>, 9> terms = [] {
+    std::array<std::array<BalanceTerm, 3>, 9> all;
+    for (int c = 0; c < 9; ++c) all[at(c)] = balance_terms(c);
+    return all;
+  }();
+  const auto weight = [](int component) { return component < 3 ? 1.0 : 2.0; };
+  Eigen::Matrix<double, 10, 6> quadratic = Eigen::Matrix<double, 10, 6>::Zero();
+  quadratic.bottomRows<6>().setIdentity();
+  const Eigen::Matrix<double, 10, 6> moves = factor.solve(quadratic);  // of the inverse
+  Eigen::Matrix<double, 9, 9> conditions = Eigen::Matrix<double, 9, 9>::Zero();
+  for (int a = 0; a < 9; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      for (const BalanceTerm& p : terms[at(a)]) {
+        for (const BalanceTerm& q : terms[at(b)]) {
+          if (p.component != q.component) continue;
+          conditions(a, b) +=
+              p.factor * q.factor * moves(p.quadratic, q.quadratic - 4) / weight(p.component);
+        }
       }
+      conditions(b, a) = conditions(a, b);
     }
   }
-  Eigen::Matrix<double, 60, 9> moves;  // of the coefficients by a unit multiplier
-  for (int c = 0; c < 6; ++c) {
-    const double weight = c < 3 ? 1.0 : 2.0;
-    moves.middleRows<10>(10 * c) = inverse / weight * rows.middleCols<10>(10 * c).transpose();
-  }
-  const Eigen::LDLT<Conditions> conditions(Conditions(rows * moves));
-  for (Eigen::Index field = 0; field < coefficients.cols() / 6; ++field) {
-    Eigen::Matrix<double, 60, 1> all;
-    for (int c = 0; c < 6; ++c) all.segment<10>(10 * c) = coefficients.col(6 * field + c);
-    all -= moves * conditions.solve(rows * all);
-    for (int c = 0; c < 6; ++c) coefficients.col(6 * field + c) = all.segment<10>(10 * c);
+  const Eigen::LDLT<Eigen::Matrix<double, 9, 9>> solver(conditions);
+  for (Eigen::Index first = 0; first < coefficients.cols(); first += 6) {  // field by field
+    Eigen::Matrix<double, 9, 1> missed = Eigen::Matrix<double, 9, 1>::Zero();
+    for (int c = 0; c < 9; ++c) {
+      for (const BalanceTerm& t : terms[at(c)]) {
+        missed[c] += t.factor * coefficients(t.quadratic, first + t.component);
+      }
+    }
+    const Eigen::Matrix<double, 9, 1> multipliers = solver.solve(missed);
+    for (int c = 0; c < 9; ++c) {
+      for (const BalanceTerm& t : terms[at(c)]) {
+        coefficients.col(first + t.component) -=
+            t.factor * multipliers[c] / weight(t.component) * moves.col(t.quadratic - 4);
+      }
+    }
   }
 }
 
