@@ -10,7 +10,8 @@ import numpy as np
 
 from codesign.chain.flight import joint_names
 from codesign.parts.part import Part
-from codesign.robot.clearance import convex_pieces, flown_interference
+from codesign.robot.clearance import flown_interference
+from codesign.robot.hulls import convex_pieces
 from codesign.transforms import Matrix
 
 if TYPE_CHECKING:

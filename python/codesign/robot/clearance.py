@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Annotated, Any
 
-import manifold3d
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from codesign.dynamics import hull_distances
-from codesign.errors import MeshError, StudyError, UrdfError
+from codesign.errors import StudyError, UrdfError
 from codesign.robot.assembly import PartPlacement, place_points
 from codesign.robot.description import RobotDescription
 from codesign.robot.urdf_elements import Shape
@@ -109,32 +108,6 @@ def telling_samples(history: Matrix, count: int) -> Indices:
     """Rows of a flown history (n, joints) where each joint is at its ends, and `count` evenly in time; ascending."""
     even = np.linspace(0, len(history) - 1, count).round().astype(np.intp)
     return np.unique(np.concatenate([history.argmin(axis=0), history.argmax(axis=0), even]))
-
-
-def hull_vertices(points: Matrix) -> Matrix:
-    """Vertices (m, 3) of the convex hull of a solid's points (n, 3)."""
-    from scipy.spatial import ConvexHull  # a quarter of a second to import
-
-    return np.ascontiguousarray(points[ConvexHull(points).vertices], dtype=float)
-
-
-def convex_pieces(points: Matrix, triangles: NDArray[Any], count: int) -> list[Matrix]:
-    """Vertices of `count` convex pieces that cover a solid: hulls of slices across its longest extent.
-
-    points (n, 3), triangles (m, 3): closed surface. Raises: MeshError if it is not closed.
-    """
-    vertices, corners = np.array(points, dtype=np.float64), np.array(triangles, dtype=np.uint64)
-    body = manifold3d.Manifold(manifold3d.Mesh64(vert_properties=vertices, tri_verts=corners))
-    if body.status() != manifold3d.Error.NoError or body.is_empty():
-        raise MeshError(f"no convex pieces: the surface is not closed ({body.status().name})")
-    axis = int(np.argmax(np.ptp(points, axis=0)))
-    normal = np.eye(3)[axis]
-    low, high = points[:, axis].min(), points[:, axis].max()
-    pieces = []
-    for cut in np.linspace(high, low, count + 1)[1:-1]:
-        above, body = body.split_by_plane(normal, float(cut))
-        pieces.append(above)
-    return [hull_vertices(p.to_mesh64().vert_properties[:, :3]) for p in (*pieces, body) if not p.is_empty()]
 
 
 def link_pieces(robot: RobotDescription, given: Pieces) -> dict[str, list[Matrix]]:

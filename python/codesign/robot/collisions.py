@@ -12,8 +12,9 @@ from itertools import combinations
 import numpy as np
 
 from codesign.robot.bodies import child_joints, rigid_bodies
-from codesign.robot.clearance import CYLINDER_SIDES, hull_vertices, pair_clearances, posture_poses, shape_points
+from codesign.robot.clearance import CYLINDER_SIDES, pair_clearances, posture_poses, shape_points
 from codesign.robot.description import RobotDescription
+from codesign.robot.hulls import hull_vertices
 from codesign.robot.package import load_mesh
 from codesign.robot.urdf_elements import Shape
 from codesign.robot.urdf_xml import MOVING

@@ -3,6 +3,7 @@
 from pathlib import Path
 from types import SimpleNamespace
 
+import manifold3d
 import numpy as np
 import pytest
 from scipy.optimize import nnls
@@ -17,14 +18,13 @@ from codesign.robot.clearance import (
     PlumeSettings,
     axis_angle,
     check_interference,
-    convex_pieces,
     flown_interference,
-    hull_vertices,
     link_pieces,
     range_postures,
     telling_samples,
 )
 from codesign.robot.description import RobotDescription
+from codesign.robot.hulls import convex_pieces, hull_vertices
 from codesign.studies import ironcub
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -188,6 +188,31 @@ def test_convex_pieces_cover_the_part_and_nothing_far_from_it():
     assert np.any(inside, axis=0).all()
     volume = sum(ConvexHull(piece).volume for piece in pieces)
     assert volume < 0.45 * ConvexHull(surface.points).volume
+
+
+def test_convex_pieces_are_the_hulls_of_slices_that_a_boolean_cuts():
+    surface = ForearmJetSupport(90, 100).surface(24)
+    body = manifold3d.Manifold(
+        manifold3d.Mesh64(np.array(surface.points, dtype=float), np.array(surface.triangles, dtype=np.uint64))
+    )
+    axis = int(np.argmax(np.ptp(surface.points, axis=0)))
+    x = surface.points[:, axis]
+    cuts = np.linspace(x.max(), x.min() - 1e-3, 6)
+    cuts[1:-1] = np.linspace(x.max(), x.min(), 6)[1:-1]
+    for piece, cut in zip(convex_pieces(surface.points, surface.triangles, 5), cuts[1:], strict=True):
+        above, body = body.split_by_plane(np.eye(3)[axis], float(cut))
+        wanted = ConvexHull(above.to_mesh64().vert_properties[:, :3])
+        found = ConvexHull(piece)
+        assert found.volume == pytest.approx(wanted.volume, rel=1e-12)
+        assert found.area == pytest.approx(wanted.area, rel=1e-12)
+
+
+def test_a_gap_between_two_bodies_is_in_no_piece():
+    box = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 0.1) for z in (0.0, 0.1)])
+    triangles = outward(box, ConvexHull(box).simplices)
+    points = np.vstack([box, box + np.array([3.0, 0.0, 0.0])])
+    pieces = convex_pieces(points, np.vstack([triangles, triangles + len(box)]), 4)
+    assert [sorted({*piece[:, 0]}) for piece in pieces] == [[3.0, 4.0], [0.0, 1.0]]
 
 
 def test_open_surfaces_have_no_convex_pieces():
