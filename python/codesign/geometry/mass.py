@@ -37,12 +37,14 @@ def volume_moments(points: Vector, triangles: Indices) -> Vector:
     Sum over the tetrahedra between the origin and each triangle: with corners a, b, c and s = a + b + c,
     the integral of x_i x_j is det(a, b, c) / 120 * (a_i a_j + b_i b_j + c_i c_j + s_i s_j).
     """
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    determinant = np.einsum("ij,ij->i", a, np.cross(b, c))
-    s = a + b + c
-    second = sum(np.einsum("n,ni,nj->ij", determinant, v, v) for v in (a, b, c, s)) / 120.0
+    a, b, c = corners = np.ascontiguousarray(points.T)[:, triangles.T].swapaxes(0, 1)  # each (3, m)
+    determinant = (
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+    s = corners.sum(axis=0)
+    second = sum((determinant * v) @ v.T for v in (a, b, c, s)) / 120.0
     i, j = [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]
-    return np.concatenate(([determinant.sum() / 6.0], determinant @ s / 24.0, second[i, j]))
+    return np.concatenate(([determinant.sum() / 6.0], s @ determinant / 24.0, second[i, j]))
 
 
 def settled(coarse: Vector, fine: Vector) -> bool:

@@ -83,21 +83,16 @@ def _revolution(revolution: Revolution, resolution: Resolution) -> PrimitiveMesh
     turn = np.arange(len(row)) - start[row]
     axial, radius = outline[row, 0], outline[row, 1]
     local = np.stack((axial, radius * np.cos(angle)[turn], radius * np.sin(angle)[turn]), axis=1)
-    triangles, faces = [], []
-    now = np.arange(steps)
-    ahead = np.roll(now, -1)
-    for i, number in enumerate(edge):
-        j = (i + 1) % len(outline)
-        if not on_axis[i]:
-            tip = np.full(steps, start[j]) if on_axis[j] else start[j] + ahead
-            triangles.append(np.stack((start[i] + now, tip, start[i] + ahead), axis=1))
-            faces.append(np.full(steps, number))
-        if not on_axis[j]:
-            root = np.full(steps, start[i]) if on_axis[i] else start[i] + now
-            triangles.append(np.stack((root, start[j] + now, start[j] + ahead), axis=1))
-            faces.append(np.full(steps, number))
+    around = np.where(on_axis[:, None], 0, np.arange(steps))
+    here = start[:, None] + around  # (points of the outline, steps)
+    ahead = start[:, None] + np.roll(around, -1, axis=1)
+    below, beside = np.roll(here, -1, axis=0), np.roll(ahead, -1, axis=0)
+    strips = np.stack((np.stack((here, beside, ahead), axis=2), np.stack((here, below, beside), axis=2)), axis=1)
+    off_axis = np.stack((~on_axis, ~np.roll(on_axis, -1)), axis=1)
+    triangles = strips[off_axis].reshape(-1, 3)
+    faces = np.repeat(np.stack((edge, edge), axis=1)[off_axis], steps)
     points = np.array(frame.origin) + local @ np.array([frame.x, frame.y, frame.z])
-    return _mesh([points], triangles, faces, [e.face for e in loop.edges])
+    return _mesh([points], [triangles], [faces], [e.face for e in loop.edges])
 
 
 def _mesh(points: list[Vector], triangles: list[Indices], faces: list[Indices], names: list[str]) -> PrimitiveMesh:

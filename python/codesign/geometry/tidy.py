@@ -53,26 +53,30 @@ class _Surface:
 
     def __init__(self, points: Vector, triangles: Indices, face: Indices) -> None:
         self.points, self.triangles, self.face = points, triangles.copy(), face
+        self._columns = np.ascontiguousarray(points.T)
         self.alive = np.ones(len(triangles), dtype=bool)
         self._fan: dict[int, set[int]] = {}  # living triangles around each point under repair
 
     def short_edges(self) -> list[tuple[int, int]]:
         """Edges below the tolerance, shortest first."""
-        alive = self.triangles[self.alive]
-        edges = np.concatenate([alive[:, [k, (k + 1) % 3]] for k in range(3)])
-        edges = edges[edges[:, 0] < edges[:, 1]]
-        squared = ((self.points[edges[:, 1]] - self.points[edges[:, 0]]) ** 2).sum(axis=1)
+        starts = self.triangles[self.alive].T
+        ends = np.roll(starts, -1, axis=0)
+        once = starts < ends
+        start, end = starts[once], ends[once]
+        squared = _squared(self._columns[:, end] - self._columns[:, start])
         short = np.flatnonzero(squared < SHORTEST_EDGE**2)
-        edges = edges[short[np.argsort(squared[short], kind="stable")]]
+        short = short[np.argsort(squared[short], kind="stable")]
+        edges = np.stack((start[short], end[short]), axis=1)
         self._look_around(edges)
         return [(int(a), int(b)) for a, b in edges]
 
     def flat_triangles(self) -> list[int]:
         """Triangles lower than the tolerance."""
-        a, b, c = (self.points[self.triangles[:, k]] for k in range(3))
-        sides = (b - a, c - b, a - c)
-        doubled = (np.cross(sides[0], sides[1]) ** 2).sum(axis=1)
-        longest = np.max([(side**2).sum(axis=1) for side in sides], axis=0)
+        corners = self._columns[:, self.triangles.T]  # (coordinates, corners, triangles)
+        a, b, c = (np.roll(corners, -1, axis=1) - corners).swapaxes(0, 1)
+        cross = np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
+        doubled = _squared(cross)
+        longest = np.maximum(np.maximum(_squared(a), _squared(b)), _squared(c))
         flat = np.flatnonzero((doubled < SMALLEST_HEIGHT**2 * longest) & self.alive)
         self._look_around(self.triangles[flat])
         return [int(k) for k in flat]
@@ -161,6 +165,12 @@ class _Surface:
     def result(self) -> tuple[Vector, Indices, Indices]:
         """Points in use (n, 3), triangles (m, 3) and their faces (m,)."""
         return *without_unused(self.points, self.triangles[self.alive]), self.face[self.alive]
+
+
+def _squared(vectors: Vector) -> Vector:
+    """Squared lengths (n,) of vectors (3, n)."""
+    x, y, z = vectors
+    return np.asarray(x * x + y * y + z * z)
 
 
 def _dot(a: Place, b: Place) -> float:
