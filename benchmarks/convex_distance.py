@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable, Sequence
+from itertools import product
 from typing import Any
 
 import coal
@@ -21,24 +22,27 @@ import trimesh
 from scipy.spatial import ConvexHull
 
 import codesign
-from codesign.dynamics import hull_distances
+from codesign.dynamics import hull_distances, nearest_approaches
 from codesign.robot import clearance
+from codesign.transforms import inverse
 
 DESIGN = {"angle": 15, "distance": 42, "offset": 80, "length": 108}
 Pair = tuple[np.ndarray, np.ndarray, np.ndarray]  # points, points, first_T_second
 
 
 def asked_pairs() -> list[Pair]:
-    """All pairs of one evaluation of the shipped study."""
+    """Pieces of all pairs of links that one evaluation of the shipped study measures, in its first and last posture."""
     pairs: list[Pair] = []
 
-    def record(hulls: Sequence[np.ndarray], first: Any, second: Any, poses: np.ndarray) -> np.ndarray:
-        pairs.extend((hulls[a], hulls[b], pose) for a, b, pose in zip(first, second, poses, strict=True))
-        return hull_distances(hulls, first, second, poses)
+    def record(bodies: Sequence[Sequence[np.ndarray]], poses: np.ndarray, numbers: np.ndarray, limit: float) -> Any:
+        for (a, b), k in product(numbers, (0, -1)):
+            pose = inverse(poses[a, k]) @ poses[b, k]
+            pairs.extend((first, second, pose) for first, second in product(bodies[a], bodies[b]))
+        return nearest_approaches(bodies, poses, numbers, limit)
 
-    clearance.hull_distances = record
+    clearance.nearest_approaches = record
     codesign.load_study("ironcub_paper").evaluate(DESIGN)
-    clearance.hull_distances = hull_distances
+    clearance.nearest_approaches = nearest_approaches
     return pairs
 
 

@@ -1,12 +1,15 @@
+#include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bindings/bindings.hpp"
 #include "dynamics/convex_distance.hpp"
+#include "dynamics/nearest_approach.hpp"
 
 namespace py = pybind11;
 
@@ -71,6 +74,68 @@ Array hull_distances(const std::vector<Array>& hulls, const Indices& first, cons
   return result;
 }
 
+using Numbers = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+std::vector<dynamics::PiecewiseConvex> convex_bodies(
+    const std::vector<std::vector<Array>>& bodies) {
+  std::vector<dynamics::PiecewiseConvex> made;
+  for (const std::vector<Array>& pieces : bodies) {
+    if (pieces.empty()) throw std::invalid_argument("a body must have a piece");
+    std::vector<Hull> maps;
+    for (std::size_t k = 0; k < pieces.size(); ++k) maps.push_back(hull(pieces[k], k));
+    made.emplace_back(std::move(maps));
+  }
+  return made;
+}
+
+std::vector<std::vector<dynamics::Pose>> body_poses(const Array& poses, std::size_t bodies) {
+  if (poses.ndim() != 4 || poses.shape(0) != static_cast<py::ssize_t>(bodies) ||
+      poses.shape(1) < 1 || poses.shape(2) != 4 || poses.shape(3) != 4) {
+    throw std::invalid_argument("poses must have shape (bodies, n, 4, 4), n > 0");
+  }
+  if (!Eigen::Map<const Eigen::VectorXd>(poses.data(), poses.size()).allFinite()) {
+    throw std::invalid_argument("poses must be finite");
+  }
+  std::vector<std::vector<dynamics::Pose>> made(bodies);
+  const double* next = poses.data();
+  for (auto& of_body : made) {
+    for (py::ssize_t k = 0; k < poses.shape(1); ++k, next += 16) {
+      const Eigen::Map<const RowMajor4d> T(next);
+      of_body.push_back({T.topLeftCorner<3, 3>(), T.topRightCorner<3, 1>()});
+    }
+  }
+  return made;
+}
+
+py::tuple nearest_approaches(const std::vector<std::vector<Array>>& bodies, const Array& poses,
+                             const Numbers& pairs, double limit) {
+  const std::vector<dynamics::PiecewiseConvex> made = convex_bodies(bodies);
+  const std::vector<std::vector<dynamics::Pose>> root_T_body = body_poses(poses, made.size());
+  if (pairs.size() > 0 &&
+      (pairs.minCoeff() < 0 || pairs.maxCoeff() >= static_cast<std::int64_t>(made.size()))) {
+    throw std::invalid_argument("pairs must be numbers of bodies");
+  }
+  Eigen::VectorXd distances(pairs.rows());
+  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> postures(pairs.rows());
+  {
+    py::gil_scoped_release release;
+    std::vector<dynamics::Pose> first_T_second;
+    for (Eigen::Index k = 0; k < pairs.rows(); ++k) {
+      const auto& first = root_T_body[pairs(k, 0)];
+      const auto& second = root_T_body[pairs(k, 1)];
+      first_T_second.clear();
+      for (std::size_t i = 0; i < first.size(); ++i) {
+        first_T_second.push_back(dynamics::inverse(first[i]) * second[i]);
+      }
+      const dynamics::Approach nearest =
+          dynamics::nearest_approach(made[pairs(k, 0)], made[pairs(k, 1)], first_T_second, limit);
+      distances[k] = nearest.distance;
+      postures[k] = static_cast<std::int64_t>(nearest.posture);
+    }
+  }
+  return py::make_tuple(distances, postures);
+}
+
 }  // namespace
 
 void bind_convex(py::module_& m) {
@@ -85,6 +150,18 @@ Args:
 Returns: (m,) [m]; where two hulls overlap, minus the length of the shortest translation that parts them.
 Raises: ValueError for wrong shapes, numbers or values that are not finite.
 Source: Gilbert, Johnson, Keerthi (1988); van den Bergen (2001).)");
+  m.def("nearest_approaches", &nearest_approaches, py::arg("bodies"), py::arg("poses"),
+        py::arg("pairs"), py::arg("limit"),
+        R"(Where pairs of moving bodies come nearest.
+
+Args:
+    bodies: points (k, 3) of each convex piece of each body, in its frame [m].
+    poses: (bodies, n, 4, 4) of the bodies' frames in one frame, in n postures.
+    pairs: (m, 2) numbers of bodies.
+    limit: distances [m] from here on are not told apart.
+Returns: (m,) smallest signed distances [m] as `hull_distances` gives them, the limit where none is below, and (m,)
+    numbers of the postures where they occur.
+Raises: ValueError for wrong shapes, numbers or values that are not finite.)");
 }
 
 }  // namespace codesign

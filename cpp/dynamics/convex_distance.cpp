@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -30,6 +31,12 @@ struct Difference {
     (direction.transpose() * first).maxCoeff(&i);
     (opposite.transpose() * second).maxCoeff(&j);
     return first.col(i) - first_T_second.R * second.col(j) - first_T_second.p;
+  }
+
+  // A point inside, which tells from where the origin is seen.
+  Vector3d middle() const {
+    const Vector3d second_middle = second.rowwise().mean();
+    return first.rowwise().mean() - first_T_second.R * second_middle - first_T_second.p;
   }
 };
 
@@ -72,14 +79,17 @@ Simplex with_vertex(const Simplex& old, const Vector3d& newest) {
   return best;
 }
 
-// Distance of the difference from the origin; at most kContact if it holds the origin.
-double distance_to_origin(const Difference& difference) {
-  Simplex simplex = with_vertex({}, difference.support(Vector3d::UnitX()));
+// Distance of the difference from the origin, at most kContact if it holds the origin; or as soon
+// as a plane shows that it is more than `limit`, the distance of that plane.
+double distance_to_origin(const Difference& difference, double limit) {
+  Simplex simplex = with_vertex({}, difference.middle());
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double squared = simplex.nearest.squaredNorm();
     if (squared <= kContact * kContact) break;
     const Vector3d vertex = difference.support(-simplex.nearest);
-    if (squared - simplex.nearest.dot(vertex) <= kRelativeTolerance * squared) break;
+    const double along = simplex.nearest.dot(vertex);
+    if (squared - along <= kRelativeTolerance * squared) break;
+    if (along > 0.0 && along * along > limit * limit * squared) return along / std::sqrt(squared);
     const Simplex next = with_vertex(simplex, vertex);
     if (next.nearest.squaredNorm() >= squared) break;  // round-off: nothing left to gain
     simplex = next;
@@ -206,8 +216,9 @@ Polytope first_tetrahedron(const Difference& difference) {
 }
 
 // Distance of the origin, inside the difference, from its surface; 0 if it is not inside. The
-// nearest facet of the polytope bounds it from below, every supporting plane from above.
-double depth_of_origin(const Difference& difference) {
+// nearest facet of the polytope bounds it from below, every supporting plane from above: as soon as
+// one shows that it is less than `least`, that bound.
+double depth_of_origin(const Difference& difference, double least) {
   Polytope polytope = first_tetrahedron(difference);
   if (polytope.facets.empty()) return 0.0;
   const double tolerance = kSameFacet * (polytope.vertices[0] - polytope.vertices[3]).norm();
@@ -220,7 +231,7 @@ double depth_of_origin(const Difference& difference) {
     const Vector3d vertex = difference.support(nearest->normal);
     const double upper = nearest->normal.dot(vertex);
     depth = std::min(depth, upper);
-    if (depth - lower <= tolerance) break;
+    if (depth - lower <= tolerance || depth < least) break;
     const auto number = static_cast<std::size_t>(nearest - polytope.facets.begin());
     if (!polytope.add_vertex(vertex, number, tolerance)) break;
   }
@@ -230,10 +241,10 @@ double depth_of_origin(const Difference& difference) {
 }  // namespace
 
 double signed_distance(const HullPoints& first, const HullPoints& second,
-                       const Pose& first_T_second) {
+                       const Pose& first_T_second, double limit) {
   const Difference difference{first, second, first_T_second};
-  const double distance = distance_to_origin(difference);
-  return distance > kContact ? distance : -depth_of_origin(difference);
+  const double distance = distance_to_origin(difference, std::max(limit, 0.0));
+  return distance > kContact ? distance : -depth_of_origin(difference, std::max(-limit, 0.0));
 }
 
 }  // namespace codesign::dynamics

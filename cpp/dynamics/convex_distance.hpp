@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "dynamics/spatial.hpp"
 
@@ -16,8 +17,11 @@ namespace codesign::dynamics {
 using HullPoints = Eigen::Ref<const Eigen::Matrix3Xd>;
 
 // Distance of two hulls [m]; if they overlap, minus the length of the shortest translation that
-// parts them. Flat hulls that intersect give 0.
+// parts them. Flat hulls that intersect give 0. What is above `limit` may come out as any other
+// number that is: a search for the smallest needs no more, and most hulls are soon known to be
+// apart.
 double signed_distance(const HullPoints& first, const HullPoints& second,
-                       const Pose& first_T_second);
+                       const Pose& first_T_second,
+                       double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace codesign::dynamics

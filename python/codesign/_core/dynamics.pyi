@@ -87,6 +87,7 @@ __all__: list[str] = [
     "locked_inertia",
     "mass_matrix",
     "momentum_qps",
+    "nearest_approaches",
     "potential_energy",
     "simulate_flight",
     "simulate_flights",
@@ -3210,6 +3211,25 @@ def momentum_qps(
 ]:
     """
     Momentum QPs (H, g, lower, upper) of samples 0, every, 2 every, ... of a flight, rebuilt from its log. Unknowns: thrust rates, then joint velocities. Raises ValueError if the log is not of this model and these settings.
+    """
+
+def nearest_approaches(
+    bodies: collections.abc.Sequence[collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64]]],
+    poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    pairs: typing.Annotated[numpy.typing.ArrayLike, numpy.int64, "[m, 2]"],
+    limit: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple:
+    """
+    Where pairs of moving bodies come nearest.
+
+    Args:
+        bodies: points (k, 3) of each convex piece of each body, in its frame [m].
+        poses: (bodies, n, 4, 4) of the bodies' frames in one frame, in n postures.
+        pairs: (m, 2) numbers of bodies.
+        limit: distances [m] from here on are not told apart.
+    Returns: (m,) smallest signed distances [m] as `hull_distances` gives them, the limit where none is below, and (m,)
+        numbers of the postures where they occur.
+    Raises: ValueError for wrong shapes, numbers or values that are not finite.
     """
 
 def potential_energy(

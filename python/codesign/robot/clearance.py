@@ -15,10 +15,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from codesign.dynamics import hull_distances
+from codesign.dynamics import nearest_approaches
 from codesign.errors import StudyError, UrdfError
 from codesign.robot.assembly import PartPlacement, place_points
 from codesign.robot.description import RobotDescription
+from codesign.robot.hulls import axis_angle
 from codesign.robot.urdf_elements import Shape
 from codesign.transforms import Matrix, inverse
 from codesign.units import DEGREE, MILLIMETER
@@ -26,6 +27,8 @@ from codesign.units import DEGREE, MILLIMETER
 Indices = NDArray[np.intp]
 Pieces = Mapping[str, Sequence[Matrix]]  # link -> points (n, 3) of each convex piece, link axes [m]
 CYLINDER_SIDES = 32  # inscribed: up to 0.5 % of the radius inside the true cylinder or sphere
+_TURNS = np.arange(CYLINDER_SIDES) * 2.0 * np.pi / CYLINDER_SIDES
+_CIRCLE = np.column_stack([np.cos(_TURNS), np.sin(_TURNS)])
 
 
 class PlumeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -107,7 +110,8 @@ def range_postures(ranges: Mapping[str, tuple[float, float]], count: int, seed: 
 def telling_samples(history: Matrix, count: int) -> Indices:
     """Rows of a flown history (n, joints) where each joint is at its ends, and `count` evenly in time; ascending."""
     even = np.linspace(0, len(history) - 1, count).round().astype(np.intp)
-    return np.unique(np.concatenate([history.argmin(axis=0), history.argmax(axis=0), even]))
+    joints = np.ascontiguousarray(history.T)
+    return np.unique(np.concatenate([joints.argmin(axis=1), joints.argmax(axis=1), even]))
 
 
 def link_pieces(robot: RobotDescription, given: Pieces) -> dict[str, list[Matrix]]:
@@ -194,7 +198,6 @@ def flown_interference(
 
 
 PLUME = " plume"
-RIGID = 1e-12  # m and rotation entries: pairs whose relative pose changes by less do not move
 
 
 def _require_links(robot: RobotDescription, shapes: Mapping[str, object], settings: InterferenceSettings) -> None:
@@ -220,7 +223,7 @@ def _body_pairs(
 def posture_poses(robot: RobotDescription, postures: Mapping[str, Matrix], count: int) -> dict[str, Matrix]:
     """root_T_link (count, 4, 4) of every link."""
     poses = robot.frame_poses(postures)
-    return {name: np.broadcast_to(pose, (count, 4, 4)) for name, pose in poses.items()}
+    return {name: pose if pose.ndim == 3 else np.repeat(pose[None], count, axis=0) for name, pose in poses.items()}
 
 
 def pair_clearances(
@@ -229,106 +232,24 @@ def pair_clearances(
     """Smallest signed distance [m] of each pair over all postures, where it is below `limit`; nearest first."""
     if not pairs:
         return []
-    whole = {name: _placed_spheres([np.vstack(list(pieces))], poses[name]) for name, pieces in shapes.items()}
-    first, second = (_Spheres.joined([whole[name] for name in names]) for names in zip(*pairs, strict=True))
-    near = np.flatnonzero(first.gaps(second).min(axis=1) < limit).tolist()
-    names = {name for k in near for name in pairs[k]}
-    spheres = {name: _placed_spheres(shapes[name], poses[name]) for name in names}
-    found = (_clearance(shapes, spheres, *pairs[k], _relative(poses, *pairs[k]), limit) for k in near)
-    return sorted((c for c in found if c.distance < limit), key=lambda clearance: clearance.distance)
-
-
-def _clearance(
-    shapes: Mapping[str, Sequence[Matrix]],
-    spheres: Mapping[str, _Spheres],
-    a: str,
-    b: str,
-    a_T_b: Matrix,
-    limit: float,
-) -> Clearance:
-    """Smallest signed distance of one pair of links over postures (n, 4, 4); `limit` if it is not below."""
-    hulls = [*shapes[a], *shapes[b]]
-    bound = spheres[a].between(spheres[b])[:, :, : len(a_T_b)]  # (pieces of a, pieces of b, postures)
-    nearest = Clearance(a, b, limit, 0)
-    likely = bound <= bound.min(axis=(0, 1), keepdims=True)  # their distances rule out most of the others
-    for chosen in (likely, ~likely):
-        i, j, posture = np.nonzero(chosen & (bound < nearest.distance))
-        if len(i):
-            distances = hull_distances(hulls, i, j + len(shapes[a]), a_T_b[posture])
-            k = int(np.argmin(distances))
-            if distances[k] < nearest.distance:
-                nearest = Clearance(a, b, float(distances[k]), int(posture[k]))
-    return nearest
-
-
-def _relative(poses: Mapping[str, Matrix], a: str, b: str) -> Matrix:
-    """a_T_b in every posture, or in one (1, 4, 4) if it does not change."""
-    a_T_b = inverse(poses[a]) @ poses[b]
-    rigid = np.ptp(a_T_b, axis=0).max() < RIGID
-    return a_T_b[:1] if rigid else a_T_b
-
-
-@dataclass(frozen=True, slots=True)
-class _Spheres:
-    """Spheres around solids: center (k, postures, 3) and radius (k,) [m]; gaps between them bound distances below."""
-
-    center: Matrix
-    radius: Matrix
-
-    @staticmethod
-    def joined(parts: Sequence[_Spheres]) -> _Spheres:
-        return _Spheres(np.concatenate([p.center for p in parts]), np.concatenate([p.radius for p in parts]))
-
-    def gaps(self, other: _Spheres) -> Matrix:
-        """(k, postures) from each sphere to the other one of the same number."""
-        apart = np.linalg.norm(self.center - other.center, axis=-1)
-        return np.asarray(apart - (self.radius + other.radius)[:, None])
-
-    def between(self, other: _Spheres) -> Matrix:
-        """(k, l, postures) from each sphere to each of the others."""
-        apart = np.linalg.norm(self.center[:, None] - other.center[None], axis=-1)
-        return np.asarray(apart - (self.radius[:, None] + other.radius)[..., None])
-
-
-def _placed_spheres(pieces: Sequence[Matrix], root_T_link: Matrix) -> _Spheres:
-    """A sphere around the points (n, 3) of each piece, in all postures (n, 4, 4)."""
-    center = np.array([0.5 * (points.min(axis=0) + points.max(axis=0)) for points in pieces])
-    radius = [np.linalg.norm(points - c, axis=1).max() for points, c in zip(pieces, center, strict=True)]
-    placed = center @ np.swapaxes(root_T_link[:, :3, :3], 1, 2) + root_T_link[:, None, :3, 3]  # (postures, k, 3)
-    return _Spheres(np.swapaxes(placed, 0, 1), np.array(radius))
+    names = list(dict.fromkeys(name for pair in pairs for name in pair))
+    number = {name: k for k, name in enumerate(names)}
+    numbers = np.array([[number[name] for name in pair] for pair in pairs])
+    placed = np.stack([poses[name] for name in names])
+    distances, postures = nearest_approaches([list(shapes[name]) for name in names], placed, numbers, limit)
+    found = [
+        Clearance(*pair, distance, posture)
+        for pair, distance, posture in zip(pairs, distances.tolist(), postures.tolist(), strict=True)
+        if distance < limit
+    ]
+    return sorted(found, key=lambda clearance: clearance.distance)
 
 
 def _with_angle(found: Clearance, shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix]) -> Clearance:
     """The clearance of a plume with its jet's name and the smallest angle to the link."""
     jet_T_link = inverse(poses[found.first][found.posture]) @ poses[found.second][found.posture]
-    pieces = [piece @ jet_T_link[:3, :3].T + jet_T_link[:3, 3] for piece in shapes[found.second]]
-    angle = min(axis_angle(piece) for piece in pieces)
+    angle = min(axis_angle(piece, jet_T_link) for piece in shapes[found.second])
     return Clearance(found.first.removesuffix(PLUME), found.second, found.distance, found.posture, angle)
-
-
-def axis_angle(points: Matrix) -> float:
-    """Smallest angle [rad] between the z axis and the hull of a solid's points (n, 3), seen from the origin.
-
-    Zero where the axis meets the hull; else on an edge p + t (q − p), where its cosine is stationary.
-    """
-    from scipy.spatial import ConvexHull
-
-    hull = ConvexHull(points)
-    facing = hull.equations[:, 2]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossings = np.where(facing != 0.0, -hull.equations[:, 3] / facing, np.nan)
-    enters = np.max(crossings[facing < 0.0], initial=0.0)
-    leaves = np.min(crossings[facing > 0.0], initial=np.inf)
-    if enters <= leaves and np.all(hull.equations[facing == 0.0, 3] <= 0.0):
-        return 0.0
-    edges = np.vstack([hull.simplices[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))])
-    p, d = points[edges[:, 0]], points[edges[:, 1]] - points[edges[:, 0]]
-    pp, pd, dd = (np.einsum("ij,ij->i", a, b) for a, b in ((p, p), (p, d), (d, d)))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = (d[:, 2] * pp - p[:, 2] * pd) / (p[:, 2] * dd - d[:, 2] * pd)
-    nearest = p + np.clip(np.nan_to_num(t), 0.0, 1.0)[:, None] * d
-    candidates = np.vstack([points[hull.vertices], nearest])
-    return float(np.arctan2(np.hypot(candidates[:, 0], candidates[:, 1]), candidates[:, 2]).min())
 
 
 def _plume_hull(settings: PlumeSettings) -> Matrix:
@@ -339,8 +260,7 @@ def _plume_hull(settings: PlumeSettings) -> Matrix:
 
 
 def _ring(radius: float, z: float) -> Matrix:
-    angles = np.arange(CYLINDER_SIDES) * 2.0 * np.pi / CYLINDER_SIDES
-    return np.column_stack([radius * np.cos(angles), radius * np.sin(angles), np.full(CYLINDER_SIDES, z)])
+    return np.hstack([radius * _CIRCLE, np.full((CYLINDER_SIDES, 1), z)])
 
 
 def _sphere_points() -> Matrix:

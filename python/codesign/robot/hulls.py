@@ -1,7 +1,9 @@
-"""Solids as convex pieces: hulls of points, and of the slices of a closed surface."""
+"""Solids as convex pieces: hulls of points, and of the slices of a closed surface; angles to them."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -65,3 +67,50 @@ def _crossings(points: Matrix, edges: Indices, axis: int, plane: float) -> Matri
     found = a + share[:, None] * (b - a)
     found[:, axis] = plane
     return np.asarray(found)
+
+
+@dataclass(frozen=True, slots=True)
+class _Hull:
+    """normals (f, 3), outwards, and offsets (f,) of the facets: normal · x + offset = 0; edges (e, 2), corners (c,)."""
+
+    normals: Matrix
+    offsets: Matrix
+    edges: Indices
+    corners: Indices
+
+
+@lru_cache(maxsize=512)
+def _hull(points: bytes) -> _Hull:
+    """The hull of points (n, 3) as C-contiguous floats; kept, since a robot's shapes are the same in every design."""
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(np.frombuffer(points).reshape(-1, 3))
+    edges = np.vstack([hull.simplices[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))])
+    return _Hull(hull.equations[:, :3], hull.equations[:, 3], edges, hull.vertices)
+
+
+def axis_angle(points: Matrix, frame_T_points: Matrix | None = None) -> float:
+    """Smallest angle [rad] between a frame's z axis and the hull of a solid's points (n, 3), seen from its origin.
+
+    Zero where the axis meets the hull; else on an edge p + t (q − p), where its cosine is stationary.
+
+    frame_T_points: (4, 4) pose of the points' frame, if it is another.
+    """
+    hull = _hull(np.ascontiguousarray(points, dtype=float).tobytes())
+    motion = np.eye(4) if frame_T_points is None else frame_T_points
+    points = points @ motion[:3, :3].T + motion[:3, 3]
+    normals = hull.normals @ motion[:3, :3].T
+    offsets, facing = hull.offsets - normals @ motion[:3, 3], normals[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossings = np.where(facing != 0.0, -offsets / facing, np.nan)
+    enters = np.max(crossings[facing < 0.0], initial=0.0)
+    leaves = np.min(crossings[facing > 0.0], initial=np.inf)
+    if enters <= leaves and np.all(offsets[facing == 0.0] <= 0.0):
+        return 0.0
+    p, d = points[hull.edges[:, 0]], points[hull.edges[:, 1]] - points[hull.edges[:, 0]]
+    pp, pd, dd = (np.einsum("ij,ij->i", a, b) for a, b in ((p, p), (p, d), (d, d)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (d[:, 2] * pp - p[:, 2] * pd) / (p[:, 2] * dd - d[:, 2] * pd)
+    nearest = p + np.clip(np.nan_to_num(t), 0.0, 1.0)[:, None] * d
+    candidates = np.vstack([points[hull.corners], nearest])
+    return float(np.arctan2(np.hypot(candidates[:, 0], candidates[:, 1]), candidates[:, 2]).min())

@@ -16,7 +16,6 @@ from codesign.robot.assembly import PartPlacement, Pose, place_points
 from codesign.robot.clearance import (
     InterferenceSettings,
     PlumeSettings,
-    axis_angle,
     check_interference,
     flown_interference,
     link_pieces,
@@ -24,7 +23,7 @@ from codesign.robot.clearance import (
     telling_samples,
 )
 from codesign.robot.description import RobotDescription
-from codesign.robot.hulls import convex_pieces, hull_vertices
+from codesign.robot.hulls import axis_angle, convex_pieces, hull_vertices
 from codesign.studies import ironcub
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
