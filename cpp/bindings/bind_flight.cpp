@@ -319,7 +319,7 @@ void bind_flight(py::module_& m) {
         using Qp = std::tuple<Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXd, Eigen::VectorXd>;
         std::vector<Qp> tuples;
         for (const MomentumQp& qp : momentum_qps(model, settings, log, every)) {
-          tuples.emplace_back(qp.H, qp.g, qp.lower, qp.upper);
+          tuples.emplace_back(qp.objective.hessian(), qp.objective.linear(), qp.lower, qp.upper);
         }
         return tuples;
       },

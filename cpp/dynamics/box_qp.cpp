@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "dynamics/dense_kernels.hpp"
-
 namespace codesign::dynamics {
 
 namespace {
@@ -22,21 +20,25 @@ constexpr double kRefineAbove = 1e-14;
 }  // namespace
 
 struct BoxQpSolver::Problem {
-  const Eigen::Ref<const Eigen::MatrixXd>& H;
-  const Eigen::Ref<const Eigen::VectorXd>& g;
+  QpObjective& objective;
   const Eigen::Ref<const Eigen::VectorXd>& lower;
   const Eigen::Ref<const Eigen::VectorXd>& upper;
 };
 
-BoxQpSolver::BoxQpSolver(int size) {
-  if (size < 0) {
-    throw std::invalid_argument("BoxQpSolver: size is " + std::to_string(size) + ", must be >= 0");
-  }
+namespace {
+
+int checked(int size) {
+  if (size >= 0) return size;
+  throw std::invalid_argument("BoxQpSolver: size is " + std::to_string(size) + ", must be >= 0");
+}
+
+}  // namespace
+
+BoxQpSolver::BoxQpSolver(int size) : dense_(checked(size)) {
   place_.assign(static_cast<std::size_t>(size), Place::kFree);
   wanted_ = place_;
   free_.reserve(place_.size());
-  factor_.setZero(size, size);
-  for (Eigen::VectorXd* v : {&free_solution_, &target_, &gradient_, &root_diagonal_,
+  for (Eigen::VectorXd* v : {&free_solution_, &target_, &gradient_, &root_diagonal_, &linear_size_,
                              &gradient_scale_, &result_.x, &result_.multipliers}) {
     v->setZero(size);
   }
@@ -49,11 +51,22 @@ const BoxQpResult& BoxQpSolver::solve(const Eigen::Ref<const Eigen::MatrixXd>& H
                                       const Eigen::Ref<const Eigen::VectorXd>& lower,
                                       const Eigen::Ref<const Eigen::VectorXd>& upper) {
   const Eigen::Index n = result_.x.size();
-  if (H.rows() != n || H.cols() != n || g.size() != n || lower.size() != n || upper.size() != n) {
-    throw std::invalid_argument("BoxQpSolver: H, g, lower and upper must have size " +
+  if (H.rows() != n || H.cols() != n || g.size() != n) {
+    throw std::invalid_argument("BoxQpSolver: H and g must have size " + std::to_string(n));
+  }
+  dense_.set(H, g);
+  return solve(dense_, lower, upper);
+}
+
+const BoxQpResult& BoxQpSolver::solve(QpObjective& objective,
+                                      const Eigen::Ref<const Eigen::VectorXd>& lower,
+                                      const Eigen::Ref<const Eigen::VectorXd>& upper) {
+  const Eigen::Index n = result_.x.size();
+  if (objective.size() != n || lower.size() != n || upper.size() != n) {
+    throw std::invalid_argument("BoxQpSolver: objective, lower and upper must have size " +
                                 std::to_string(n));
   }
-  const Problem p{H, g, lower, upper};
+  const Problem p{objective, lower, upper};
   result_.iterations = 0;
   result_.kkt_residual = 0.0;
   if (n == 0) {  // of a robot without joints
@@ -89,10 +102,11 @@ const BoxQpResult& BoxQpSolver::solve(const Eigen::Ref<const Eigen::MatrixXd>& H
 // Scales, and the working set of the last call made valid for the new bounds.
 bool BoxQpSolver::prepare(const Problem& p) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (Eigen::Index i = 0; i < p.g.size(); ++i) {
+  p.objective.scales(root_diagonal_, linear_size_);
+  for (Eigen::Index i = 0; i < size(); ++i) {
     const double low = p.lower[i];
     const double high = p.upper[i];
-    if (!(low <= high) || low == kInfinity || high == -kInfinity || std::isnan(p.g[i])) {
+    if (!(low <= high) || low == kInfinity || high == -kInfinity || std::isnan(linear_size_[i])) {
       return false;
     }
     Place& place = place_[static_cast<std::size_t>(i)];
@@ -102,7 +116,6 @@ bool BoxQpSolver::prepare(const Problem& p) {
                (place == Place::kUpper && high == kInfinity)) {
       place = Place::kFree;
     }
-    root_diagonal_[i] = std::sqrt(std::max(p.H(i, i), 0.0));
   }
   return true;
 }
@@ -120,33 +133,13 @@ bool BoxQpSolver::minimize_on_free_set(const Problem& p, Eigen::VectorXd& target
       target[i] = place == Place::kUpper ? p.upper[i] : p.lower[i];
     }
   }
-  const int m = static_cast<int>(free_.size());
-  const int stride = static_cast<int>(factor_.outerStride());
-  for (int c = 0; c < m; ++c) {
-    const int column = free_[static_cast<std::size_t>(c)];
-    const double* source = p.H.data() + column * p.H.outerStride();
-    double* copy = factor_.data() + c * stride;
-    for (int r = c; r < m; ++r) copy[r] = source[free_[static_cast<std::size_t>(r)]];
-    free_solution_[c] = -p.g[column];
-  }
-  for (int i = 0; i < n; ++i) {
-    if (place_[static_cast<std::size_t>(i)] == Place::kFree || target[i] == 0.0) continue;
-    const double* source = p.H.data() + i * p.H.outerStride();
-    for (int r = 0; r < m; ++r) {
-      free_solution_[r] -= target[i] * source[free_[static_cast<std::size_t>(r)]];
-    }
-  }
-  if (!cholesky_in_place(factor_.data(), m, stride)) return false;
-  cholesky_solve(factor_.data(), m, stride, free_solution_.data());
-  for (int r = 0; r < m; ++r) target[free_[static_cast<std::size_t>(r)]] = free_solution_[r];
-  return true;
+  return p.objective.minimize(free_, target);
 }
 
 void BoxQpSolver::update_gradient(const Problem& p) {
-  gradient_ = p.g;
-  gradient_.noalias() += p.H * result_.x;
+  p.objective.gradient(result_.x, gradient_);
   const double weighted_size = root_diagonal_.dot(result_.x.cwiseAbs());
-  gradient_scale_ = root_diagonal_ * weighted_size + p.g.cwiseAbs();
+  gradient_scale_ = root_diagonal_ * weighted_size + linear_size_;
 }
 
 double BoxQpSolver::tolerance(int i) const { return kMultiplierTolerance * gradient_scale_[i]; }
@@ -170,7 +163,7 @@ double BoxQpSolver::residual() const {
 void BoxQpSolver::refine(const Problem& p) {
   const int m = static_cast<int>(free_.size());
   for (int r = 0; r < m; ++r) free_solution_[r] = -gradient_[free_[static_cast<std::size_t>(r)]];
-  cholesky_solve(factor_.data(), m, static_cast<int>(factor_.outerStride()), free_solution_.data());
+  p.objective.solve_free(free_, free_solution_);
   target_ = result_.x;
   for (int r = 0; r < m; ++r) {
     const int i = free_[static_cast<std::size_t>(r)];

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "dynamics/qp_objective.hpp"
+
 namespace codesign::dynamics {
 
 // A strictly convex quadratic program with bounds only:
@@ -54,6 +56,10 @@ class BoxQpSolver {
                            const Eigen::Ref<const Eigen::VectorXd>& lower,
                            const Eigen::Ref<const Eigen::VectorXd>& upper);
 
+  // The same of an objective with a structure.
+  const BoxQpResult& solve(QpObjective& objective, const Eigen::Ref<const Eigen::VectorXd>& lower,
+                           const Eigen::Ref<const Eigen::VectorXd>& upper);
+
   void reset();  // forget the last working set: the next call starts with every variable free
 
  private:
@@ -71,14 +77,15 @@ class BoxQpSolver {
   int most_violated_multiplier() const;
   double tolerance(int i) const;
 
-  std::vector<Place> place_;        // where each variable is held: the working set
-  std::vector<Place> wanted_;       // the next working set, while bounds are exchanged
-  std::vector<int> free_;           // indices of the free variables, ascending
-  Eigen::MatrixXd factor_;          // Cholesky factor of the free block, lower triangle
-  Eigen::VectorXd free_solution_;   // right-hand side and solution of the free block
+  std::vector<Place> place_;   // where each variable is held: the working set
+  std::vector<Place> wanted_;  // the next working set, while bounds are exchanged
+  std::vector<int> free_;      // indices of the free variables, ascending
+  DenseObjective dense_;
+  Eigen::VectorXd free_solution_;   // right-hand side and solution of a refinement
   Eigen::VectorXd target_;          // minimizer on the current free set, all variables
   Eigen::VectorXd gradient_;        // Hx + g
   Eigen::VectorXd root_diagonal_;   // √H_ii
+  Eigen::VectorXd linear_size_;     // |g_i|
   Eigen::VectorXd gradient_scale_;  // what the entries of the gradient are measured against
   BoxQpResult result_;
 };

@@ -110,6 +110,40 @@ void add_outer_product(double* c, int n, int c_stride, const double* a, int m, i
   }
 }
 
+// Rows as those of one column of add_outer_product.
+CODESIGN_BOTH_WIDTHS
+void add_product(const double* a, int n, int m, int stride, const double* x, double* y) {
+  if (n < kRows) {
+    for (int i = 0; i < n; ++i) add_columns(a + i, m, stride, x, y[i]);
+    return;
+  }
+  Four top, sum;
+  load(y, top);
+  add_columns(a, m, stride, x, top);
+  for (int i = n - kRows; i > 0; i -= kRows) {
+    load(y + i, sum);
+    add_columns(a + i, m, stride, x, sum);
+    store(sum, y + i);
+  }
+  store(top, y);
+}
+
+CODESIGN_BOTH_WIDTHS
+void add_transposed_product(const double* a, int n, int m, int stride, const double* x, double* y) {
+  for (int j = 0; j < m; ++j, a += stride) {
+    Four sum = {0.0, 0.0, 0.0, 0.0}, p, q;
+    int i = 0;
+    for (; i + kRows <= n; i += kRows) {
+      load(a + i, p);
+      load(x + i, q);
+      sum += p * q;
+    }
+    double rest = 0.0;
+    for (; i < n; ++i) rest += a[i] * x[i];
+    y[j] += ((sum[0] + sum[2]) + (sum[1] + sum[3])) + rest;
+  }
+}
+
 // Columns from the left; rows of each as in add_outer_product.
 CODESIGN_BOTH_WIDTHS
 bool cholesky_in_place(double* a, int m, int stride) {

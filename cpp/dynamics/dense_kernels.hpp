@@ -10,6 +10,12 @@ namespace codesign::dynamics {
 void add_outer_product(double* c, int n, int c_stride, const double* a, int m, int a_stride,
                        double factor);
 
+// y += A x; A is n×m.
+void add_product(const double* a, int n, int m, int stride, const double* x, double* y);
+
+// y += Aᵀ x; A is n×m.
+void add_transposed_product(const double* a, int n, int m, int stride, const double* x, double* y);
+
 // Overwrites the lower triangle of the m×m matrix with L, A = L Lᵀ; the diagonal holds 1/L_jj.
 // False, with the content lost, if a pivot is not positive (or not a number).
 bool cholesky_in_place(double* a, int m, int stride);

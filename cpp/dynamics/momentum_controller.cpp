@@ -4,8 +4,6 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "dynamics/dense_kernels.hpp"
-
 namespace codesign::dynamics {
 
 using Eigen::Matrix3d;
@@ -28,15 +26,27 @@ Vector6d modeled_momentum_rate(const RobotTerms& terms, const Eigen::Ref<const M
 MomentumTask::MomentumTask(int jets, int joints) {
   A.setZero(6, jets);
   Lambda.setZero(6, kBaseDofs + joints);
-  rows.setZero(jets + joints, kTaskRows);
+  rows.setZero(kTaskRows, jets + joints);
   offset.setZero();
 }
 
-MomentumQp::MomentumQp(int size)
-    : H(Eigen::MatrixXd::Zero(size, size)),
-      g(Eigen::VectorXd::Zero(size)),
-      lower(Eigen::VectorXd::Zero(size)),
-      upper(Eigen::VectorXd::Zero(size)) {}
+MomentumQp::MomentumQp(const FlightSettings& settings, int joints)
+    : objective(kTaskRows + static_cast<int>(settings.symmetry_pairs.size()),
+                static_cast<int>(settings.actuators.size()) + joints),
+      lower(Eigen::VectorXd::Zero(objective.size())),
+      upper(lower) {
+  const Weights& w = settings.weights;
+  Eigen::VectorXd damping =
+      Eigen::VectorXd::Constant(lower.size(), w.thrust_rate + w.regularization);
+  damping.tail(joints).setConstant(w.posture + w.joint_velocity + w.regularization);
+  objective.set_damping(damping);
+  Eigen::Index row = kTaskRows;
+  for (const auto& [a, b] : settings.symmetry_pairs) {
+    objective.scaled(row, a) = std::sqrt(w.thrust_symmetry) * objective.unit()[a];
+    objective.scaled(row, b) = -std::sqrt(w.thrust_symmetry) * objective.unit()[b];
+    ++row;
+  }
+}
 
 namespace {
 
@@ -90,9 +100,9 @@ void build_momentum_task(const Model& model, const FlightSettings& settings,
   const double K_P = gains.momentum_proportional;
   const double K_D = gains.momentum_derivative;
   const double K = K_P + 1.0 / gains.momentum_integral + K_D;
-  task.rows.topLeftCorner(jets, 3) = task.A.topRows<3>().transpose();
-  task.rows.bottomLeftCorner(joints, 3) =
-      (Lambda.topRows<3>() + K * C.topRows<3>()).rightCols(joints).transpose();
+  task.rows.topLeftCorner(3, jets) = task.A.topRows<3>();
+  task.rows.topRightCorner(3, joints) =
+      Lambda.topRightCorner(3, joints) + K * C.topRightCorner(3, joints);
   task.offset.head<3>() =
       (Lambda.topLeftCorner<3, kBaseDofs>() + K * C.topLeftCorner<3, kBaseDofs>()) * base_velocity -
       K * mass * reference.velocity - mass * reference.jerk +
@@ -102,13 +112,11 @@ void build_momentum_task(const Model& model, const FlightSettings& settings,
   // Angular part, base axes; then the constant-inertia task.
   const Matrix3d& R = state.base.R;
   for (Eigen::Index i = 0; i < jets; ++i) {
-    task.rows.row(i).segment<3>(3) = (R.transpose() * task.A.col(i).tail<3>()).transpose();
+    task.rows.col(i).segment<3>(3) = R.transpose() * task.A.col(i).tail<3>();
   }
   for (Eigen::Index j = 0; j < joints; ++j) {
-    task.rows.row(jets + j).segment<3>(3) =
-        (R.transpose() * Lambda.col(joint_columns + j).tail<3>()).transpose();
-    task.rows.row(jets + j).tail<3>() =
-        (R.transpose() * C.col(joint_columns + j).tail<3>()).transpose();
+    task.rows.col(jets + j).segment<3>(3) = R.transpose() * Lambda.col(joint_columns + j).tail<3>();
+    task.rows.col(jets + j).tail<3>() = R.transpose() * C.col(joint_columns + j).tail<3>();
   }
   const Vector3d base_part = Lambda.bottomLeftCorner<3, kBaseDofs>() * base_velocity;
   task.offset.segment<3>(3) =
@@ -149,28 +157,19 @@ void build_momentum_qp(const FlightSettings& settings, const ControllerOrigin& o
                        const MomentumTask& task, const RobotState& state,
                        const Eigen::Ref<const Eigen::VectorXd>& thrusts, MomentumQp& qp) {
   const Weights& w = settings.weights;
-  const Eigen::Index jets = thrusts.size();
   const Eigen::Index joints = state.joints.size();
-  const int size = static_cast<int>(qp.g.size());
-  const int stride = static_cast<int>(qp.H.outerStride());
-
-  qp.H.setZero();
-  qp.H.diagonal().head(jets).setConstant(w.thrust_rate + w.regularization);
-  qp.H.diagonal().tail(joints).setConstant(w.posture + w.joint_velocity + w.regularization);
-  for (const auto& [a, b] : settings.symmetry_pairs) {
-    qp.H(a, a) += w.thrust_symmetry;
-    qp.H(b, b) += w.thrust_symmetry;
-    qp.H(std::max(a, b), std::min(a, b)) -= w.thrust_symmetry;
+  TaskObjective& objective = qp.objective;
+  Eigen::Matrix<double, kTaskRows, 1> root;
+  root << Vector6d::Constant(std::sqrt(w.momentum)),
+      Vector3d::Constant(std::sqrt(w.constant_inertia));
+  for (Eigen::Index i = 0; i < task.rows.cols(); ++i) {
+    objective.scaled.col(i).head<kTaskRows>() =
+        task.rows.col(i).cwiseProduct(objective.unit()[i] * root);
   }
-  const double* rows = task.rows.data();
-  add_outer_product(qp.H.data(), size, stride, rows, 6, size, w.momentum);
-  add_outer_product(qp.H.data(), size, stride, rows + 6 * size, 3, size, w.constant_inertia);
-  qp.H.triangularView<Eigen::StrictlyUpper>() = qp.H.transpose();
-
-  qp.g.noalias() = task.rows.leftCols<6>() * (w.momentum * task.offset.head<6>());
-  qp.g.noalias() += task.rows.rightCols<3>() * (w.constant_inertia * task.offset.tail<3>());
-  qp.g.tail(joints) +=
-      w.posture * settings.gains.posture.cwiseProduct(state.joints - origin.posture);
+  objective.offset.head<kTaskRows>() = root.cwiseProduct(task.offset);
+  objective.scaled_linear.tail(joints) =
+      w.posture * settings.gains.posture.cwiseProduct(state.joints - origin.posture)
+                      .cwiseProduct(objective.unit().tail(joints));
 
   write_bounds(settings, state, thrusts, qp);
 }

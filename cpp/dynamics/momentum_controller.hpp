@@ -37,12 +37,11 @@ struct ControllerOrigin {
 ControllerOrigin controller_origin(const FlightSettings& settings, const RobotState& state,
                                    const RobotTerms& terms);
 
-// E and δ above, then the constant-inertia rows: task is (jets + joints, 9), transposed so that its
-// columns are contiguous; offset is (9,).
+// E and δ above, then the constant-inertia rows: (9, jets + joints) and (9,).
 struct MomentumTask {
   MomentumTask(int jets, int joints);
   Matrix6Xd A, Lambda;
-  Eigen::Matrix<double, Eigen::Dynamic, kTaskRows> rows;
+  Eigen::Matrix<double, kTaskRows, Eigen::Dynamic> rows;
   Eigen::Matrix<double, kTaskRows, 1> offset;
 };
 
@@ -56,11 +55,11 @@ void build_momentum_task(const Model& model, const FlightSettings& settings,
 Vector6d modeled_momentum_rate(const RobotTerms& terms, const Eigen::Ref<const Matrix6Xd>& A,
                                const Eigen::Ref<const Eigen::VectorXd>& thrusts);
 
-// min ½ uᵀHu + gᵀu, lower ≤ u ≤ upper.
+// min ½ uᵀHu + gᵀu, lower ≤ u ≤ upper. Symmetric pairs are tasks after those of MomentumTask.
 struct MomentumQp {
-  explicit MomentumQp(int size);
-  Eigen::MatrixXd H;
-  Eigen::VectorXd g, lower, upper;
+  MomentumQp(const FlightSettings& settings, int joints);
+  TaskObjective objective;
+  Eigen::VectorXd lower, upper;
 };
 
 // Writes the QP above, with the bounds that joint ranges and thrust ranges leave to u.

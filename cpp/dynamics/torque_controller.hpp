@@ -29,16 +29,20 @@ class TorqueController {
                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity);
 
   const Eigen::VectorXd& torque() const { return torque_; }  // of the last update (n,) [Nm]
-  int iterations() const { return iterations_; }             // factorizations of the last update
+  int iterations() const { return iterations_; }             // linear systems solved in it
 
  private:
+  void solve_near_identity(const Eigen::MatrixXd& inertia);
   QpStatus solve_within_limits(const JointSpace& joint_space);
 
   double step_, proportional_, integral_, weight_, limit_, rate_limit_;
+  bool used_once_;  // every inertia, between two calls of renew()
   bool started_ = false;
+  bool factored_ = false;
   int iterations_ = 0;
   Eigen::VectorXd error_integral_, velocity_error_, right_side_, solution_, torque_;
-  Eigen::MatrixXd system_;
+  Eigen::VectorXd half_product_, product_, residual_, direction_;  // of conjugate gradients
+  Eigen::MatrixXd system_;                                         // factored, else
   // For the bounded problem.
   BoxQpSolver solver_;
   Eigen::MatrixXd inverse_, hessian_;

@@ -102,9 +102,9 @@ Flight::Flight(const Model& model, const FlightSettings& settings, const FlightS
       reference_generator_(settings, Vector3d::Zero(), Matrix3d::Identity()),
       observer_(settings.gains.observer, settings.step),
       task_(static_cast<int>(settings.actuators.size()), model.joint_count()),
-      qp_(static_cast<int>(settings.actuators.size()) + model.joint_count()),
+      qp_(settings, model.joint_count()),
       outputs_(static_cast<int>(std::lround(settings.delays.momentum / settings.step))),
-      qp_solver_(qp_.g.size() > 0 ? static_cast<int>(qp_.g.size()) : 1),
+      qp_solver_(qp_.objective.size()),
       torque_controller_(settings) {
   const auto jets = static_cast<Index>(settings.actuators.size());
   const Index joints = model.joint_count();
@@ -192,7 +192,7 @@ FailureReason Flight::control(int k) {
                       task_);
   build_momentum_qp(settings_, origin_, task_, state_, thrust_, qp_);
   watch_.lap(log_.profile.task);
-  const BoxQpResult& solution = qp_solver_.solve(qp_.H, qp_.g, qp_.lower, qp_.upper);
+  const BoxQpResult& solution = qp_solver_.solve(qp_.objective, qp_.lower, qp_.upper);
   watch_.lap(log_.profile.momentum_qp);
   if (solution.status != QpStatus::kSolved) return FailureReason::kMomentumQp;
   const Eigen::VectorXd& outputs = outputs_.pass(solution.x);

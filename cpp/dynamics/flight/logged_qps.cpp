@@ -35,7 +35,7 @@ std::vector<MomentumQp> momentum_qps(const Model& model, const FlightSettings& a
   const ControllerOrigin origin = controller_origin(settings, logged_state(log, 0), terms);
   ReferenceGenerator generator(settings, terms.com, logged_state(log, 0).base.R);
   MomentumTask task(jets, model.joint_count());
-  MomentumQp qp(jets + model.joint_count());
+  MomentumQp qp(settings, model.joint_count());
   for (int k = 0; k < log.samples; ++k) {
     check_interrupt();
     const Reference& reference =

@@ -159,6 +159,35 @@ TEST(BoxQp, AnyWarmStartGivesTheSameSolution) {
   }
 }
 
+// Damping over many decades, down to what leaves the tasks alone to decide.
+TEST(BoxQp, AnObjectiveOfTasksHasTheSolutionOfItsHessian) {
+  std::mt19937_64 random(9);
+  for (int k = 0; k < 2000; ++k) {
+    const int tasks = 1 + k % 12, n = 1 + (k * 7) % 40;
+    const double least = std::pow(10.0, -(k % 10));
+    const Eigen::VectorXd damping =
+        random_vector(random, n, least, k % 3 == 0 ? 2.0 * least : 10.0);
+    TaskObjective objective(tasks, n);
+    objective.set_damping(damping);
+    const Eigen::MatrixXd A = 30.0 * random_matrix(random, tasks, n);
+    const Eigen::VectorXd offset = random_vector(random, tasks, -30.0, 30.0);
+    const Eigen::VectorXd linear = random_vector(random, n, -1.0, 1.0);
+    objective.scaled.topRows(tasks) = A * objective.unit().asDiagonal();
+    objective.offset.head(tasks) = offset;
+    objective.scaled_linear = linear.cwiseProduct(objective.unit());
+    Eigen::MatrixXd H = A.transpose() * A;
+    H.diagonal() += damping;
+    const Problem p{H, A.transpose() * offset + linear, random_vector(random, n, -1.0, 0.0),
+                    random_vector(random, n, 0.0, 1.0)};
+    ASSERT_LT((objective.hessian() - p.H).norm(), 1e-13 * p.H.norm());
+    ASSERT_LT((objective.linear() - p.g).norm(), 1e-12 * (p.g.norm() + offset.norm()));
+    BoxQpSolver solver(n);
+    const BoxQpResult& r = solver.solve(objective, p.lower, p.upper);
+    ASSERT_EQ(r.status, QpStatus::kSolved) << k << ": " << tasks << " tasks, n " << n;
+    ASSERT_LE(independent_residual(p, r.x), 1e-9) << k << ": " << tasks << " tasks, n " << n;
+  }
+}
+
 TEST(BoxQp, SaysWhyItDidNotSolve) {
   BoxQpSolver solver(2);
   const Eigen::MatrixXd H = Eigen::Vector2d(1.0, 2.0).asDiagonal();

@@ -61,6 +61,34 @@ MatrixXd cholesky_in_order(MatrixXd a) {
   return a;
 }
 
+TEST(DenseKernels, ProductsSumInOneOrder) {
+  std::mt19937_64 random(5);
+  for (const int n : kSizes) {
+    for (const int m : kSizes) {
+      const MatrixXd A = random_matrix(random, n + 2, m);
+      const MatrixXd x = random_matrix(random, m, 1), w = random_matrix(random, n, 1);
+      MatrixXd y = random_matrix(random, n + 1, 1), z = random_matrix(random, m, 1);
+      MatrixXd direct = y, transposed = z;
+      for (int i = 0; i < n; ++i) {
+        int k = 0;
+        for (; k + 3 <= m; k += 3) {
+          direct(i) += x(k) * A(i, k) + x(k + 1) * A(i, k + 1) + x(k + 2) * A(i, k + 2);
+        }
+        for (; k < m; ++k) direct(i) += x(k) * A(i, k);
+      }
+      for (int j = 0; j < m; ++j) {
+        double sum[5] = {0.0, 0.0, 0.0, 0.0, 0.0};  // one for what four do not reach
+        for (int i = 0; i < n; ++i) sum[i < n / 4 * 4 ? i % 4 : 4] += A(i, j) * w(i);
+        transposed(j) += ((sum[0] + sum[2]) + (sum[1] + sum[3])) + sum[4];
+      }
+      add_product(A.data(), n, m, n + 2, x.data(), y.data());
+      add_transposed_product(A.data(), n, m, n + 2, w.data(), z.data());
+      ASSERT_EQ(y, direct) << n << " x " << m;
+      ASSERT_EQ(z, transposed) << n << " x " << m;
+    }
+  }
+}
+
 TEST(DenseKernels, OuterProductSumsInOneOrderAndKeepsTheUpperTriangle) {
   std::mt19937_64 random(1);
   for (const int n : kSizes) {

@@ -22,7 +22,7 @@ class MomentumControllerTest : public ::testing::Test {
         settings_(testing::settings()),
         terms_(model_, settings_.actuators),
         task_(4, model_.joint_count()),
-        qp_(4 + model_.joint_count()) {
+        qp_(settings_, model_.joint_count()) {
     state_.base.p = Vector3d(0.1, 0.2, 1.3);
     state_.base.R = exp_so3(Vector3d(0.1, -0.2, 2.5));
     state_.joints = vector(6, 0.5);
@@ -55,7 +55,7 @@ class MomentumControllerTest : public ::testing::Test {
   double cost(const VectorXd& u) const {
     const Weights& w = settings_.weights;
     const VectorXd T = u.head(4), s_dot = u.tail(6);
-    const Eigen::Matrix<double, kTaskRows, 1> e = task_.rows.transpose() * u + task_.offset;
+    const Eigen::Matrix<double, kTaskRows, 1> e = task_.rows * u + task_.offset;
     const VectorXd pull =
         s_dot + settings_.gains.posture.cwiseProduct(state_.joints - origin_.posture);
     return 0.5 * (w.momentum * e.head<6>().squaredNorm() +
@@ -78,15 +78,16 @@ class MomentumControllerTest : public ::testing::Test {
 };
 
 TEST_F(MomentumControllerTest, QpIsTheCostOfTheSpecification) {
+  const Eigen::MatrixXd H = qp_.objective.hessian();
   const double constant = cost(VectorXd::Zero(10));
   for (int trial = 0; trial < 10; ++trial) {
     VectorXd u = vector(10, 1.0);
     u.head(4) *= 100.0;
     const double direct = cost(u) - constant;
-    const double quadratic = 0.5 * u.dot(qp_.H * u) + qp_.g.dot(u);
+    const double quadratic = 0.5 * u.dot(H * u) + qp_.objective.linear().dot(u);
     EXPECT_NEAR(direct, quadratic, 1e-10 * std::abs(cost(u)));
   }
-  EXPECT_EQ(qp_.H, qp_.H.transpose());
+  EXPECT_EQ(H, H.transpose());
 }
 
 TEST_F(MomentumControllerTest, LinearTaskIsTheErrorOfTheMomentumLaw) {
@@ -104,7 +105,7 @@ TEST_F(MomentumControllerTest, LinearTaskIsTheErrorOfTheMomentumLaw) {
                          4.061862178478973 * (rate - m * reference_.acceleration) +
                          4.661862178478973 * (momentum - m * reference_.velocity) +
                          1.5 * m * (terms_.com - reference_.position);
-  const Vector3d task = (task_.rows.transpose() * u + task_.offset).head<3>();
+  const Vector3d task = (task_.rows * u + task_.offset).head<3>();
   EXPECT_LT((task - error).norm(), 1e-10 * error.norm());
 }
 
@@ -141,7 +142,7 @@ TEST_F(MomentumControllerTest, AngularTaskAsksForTheAttitudeLaw) {
   const Vector3d wanted = I * reference_.angular_jerk - e_dot - rate_error -
                           c0 * (I_inverse * rate_error) - c0 * (I_inverse * e) -
                           c1 * (I_inverse * (L - I * reference_.angular_velocity));
-  const Vector3d task = (task_.rows.transpose() * u + task_.offset).segment<3>(3);
+  const Vector3d task = (task_.rows * u + task_.offset).segment<3>(3);
   EXPECT_LT((task - (L_ddot - wanted)).norm(), 1e-7 * task.norm());
 }
 
