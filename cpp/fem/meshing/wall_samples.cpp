@@ -48,8 +48,11 @@ class Sampler {
     while (!pieces.empty()) {
       const Piece piece = pieces.back();
       pieces.pop_back();
-      if (longest_edge(piece).first <= std::max(limit_, finest_))
+      const double longest = longest_edge(piece).first, reach = std::max(limit_, finest_);
+      if (longest <= reach)
         sample_piece(t, piece);
+      else if (2.0 * area(piece) < reach * longest)
+        cut_across(piece, static_cast<int>(std::ceil(longest / reach)), pieces);
       else
         halve(piece, pieces);
     }
@@ -95,10 +98,7 @@ class Sampler {
       if (gap < limit_) samples_.push_back({center, gap, 0.0});
       const double spacing = std::max(kSpacing * std::min(wall, gap), finest_);
       const bool whole = longest_edge(piece).first <= spacing;
-      if (whole || wall < limit_)
-        samples_.push_back(
-            {center, wall,
-             whole ? 0.5 * (piece[1] - piece[0]).cross(piece[2] - piece[0]).norm() : 0.0});
+      if (whole || wall < limit_) samples_.push_back({center, wall, whole ? area(piece) : 0.0});
       if (!whole) halve(piece, pieces);
     }
   }
@@ -115,6 +115,33 @@ class Sampler {
     const Vector3d middle = 0.5 * (piece[k] + piece[(k + 1) % 3]);
     pieces.push_back({piece[k], middle, piece[(k + 2) % 3]});
     pieces.push_back({middle, piece[(k + 1) % 3], piece[(k + 2) % 3]});
+  }
+
+  // Cuts a slender piece into as many strips across its longest edge. Halving would leave it as
+  // slender as it is: a thousand times the samples on the facets of a long tube.
+  static void cut_across(const Piece& piece, int strips, std::vector<Piece>& pieces) {
+    const std::size_t k = longest_edge(piece).second;
+    const Vector3d &start = piece[k], &end = piece[(k + 1) % 3], &tip = piece[(k + 2) % 3];
+    const Vector3d along = end - start;
+    const double foot = (tip - start).dot(along) / along.squaredNorm();  // of the tip, in 0 … 1
+    const auto low = [&](double s) -> Vector3d { return start + s * along; };
+    const auto high = [&](double s) -> Vector3d {
+      return s <= foot ? start + s / foot * (tip - start)
+                       : end + (1.0 - s) / (1.0 - foot) * (tip - end);
+    };
+    for (int i = 0; i < strips; ++i) {
+      const double from = static_cast<double>(i) / strips, to = (i + 1.0) / strips;
+      std::vector<Vector3d> outline{low(from), low(to)};
+      if (to < 1.0) outline.push_back(high(to));
+      if (from < foot && foot < to) outline.push_back(tip);
+      if (from > 0.0) outline.push_back(high(from));
+      for (std::size_t j = 2; j < outline.size(); ++j)
+        pieces.push_back({outline[0], outline[j - 1], outline[j]});
+    }
+  }
+
+  static double area(const Piece& piece) {
+    return 0.5 * (piece[1] - piece[0]).cross(piece[2] - piece[0]).norm();
   }
 
   int patch_of(int t) const { return patches_.of_triangle[static_cast<std::size_t>(t)]; }
