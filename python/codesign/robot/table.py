@@ -189,10 +189,15 @@ def main(arguments: list[str]) -> int:
 
 def generated_urdf(path: str | Path) -> str:
     """URDF text of the table in a file, with a comment that names the file. Raises: UrdfError as `from_text` does."""
-    path = Path(path)
-    text = urdf_from_table(load_table(path), comment=f"made from {path.name}, which says where the figures come from")
+    text = written_urdf(path)
     RobotDescription.from_text(text)
     return text
+
+
+def written_urdf(path: str | Path) -> str:
+    """As `generated_urdf`, but not read back: to be compared with a text that is known to be sound."""
+    path = Path(path)
+    return urdf_from_table(load_table(path), comment=f"made from {path.name}, which says where the figures come from")
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from codesign.names import nearest
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignSpace
 from codesign.robot.description import RobotDescription
-from codesign.robot.table import generated_urdf
+from codesign.robot.table import generated_urdf, written_urdf
 from codesign.study.checking.flight import flight_problems, robot_problems
 from codesign.study.checking.problems import Problem
 from codesign.study.checking.references import reference_problems
@@ -174,11 +174,14 @@ def stale_robot(study: StudyData) -> Iterator[Problem]:
     file = study.path.parent / study.config.robot.urdf if study.config.robot is not None else None
     if file is None or file.suffix == ".toml":
         return
-    made = MADE_FROM.search(file.read_text(encoding="utf-8", errors="replace"))
+    text = file.read_text(encoding="utf-8", errors="replace")
+    made = MADE_FROM.search(text)
     table = file.with_name(made[1]) if made else file
     if made is None or not table.is_file():
         return
     try:
+        if written_urdf(table) == text:
+            return
         current = RobotDescription.from_text(generated_urdf(table)).to_text() == study.base_robot.to_text()
     except UrdfError as error:
         yield "robot.urdf", f"{file.name} is made from {table.name}, which is wrong: {error}"
