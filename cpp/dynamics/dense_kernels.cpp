@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "dynamics/both_widths.hpp"
@@ -29,47 +30,92 @@ __attribute__((always_inline)) inline void store(const Four& rows, double* to) {
   std::memcpy(to, &rows, sizeof(rows));
 }
 
-// Rows of a column of C, those where `a` starts: + Σ_k f_k a_k.
-template <class Rows>
-__attribute__((always_inline)) inline void add_columns(const double* a, int m, int a_stride,
-                                                       const double* f, Rows& sum) {
+// Of one column of C, `count` blocks of four rows (or of one, as a plain double) that start at
+// `row`: + Σ_k f_k a_k.
+template <int count, class Rows>
+__attribute__((always_inline)) inline void add_columns(const double* a, const int* row, int m,
+                                                       int a_stride, const double* f, Rows* sum) {
   Rows x, y, z;
   int k = 0;
-  for (; k + 3 <= m; k += 3) {
-    load(a + k * a_stride, x);
-    load(a + (k + 1) * a_stride, y);
-    load(a + (k + 2) * a_stride, z);
-    sum += f[k] * x + f[k + 1] * y + f[k + 2] * z;
+  for (; k + 3 <= m; k += 3, a += 3 * a_stride) {
+    for (int b = 0; b < count; ++b) {
+      load(a + row[b], x);
+      load(a + a_stride + row[b], y);
+      load(a + 2 * a_stride + row[b], z);
+      sum[b] += f[k] * x + f[k + 1] * y + f[k + 2] * z;
+    }
   }
-  for (; k < m; ++k) {
-    load(a + k * a_stride, x);
-    sum += f[k] * x;
+  for (; k < m; ++k, a += a_stride) {
+    for (int b = 0; b < count; ++b) {
+      load(a + row[b], x);
+      sum[b] += f[k] * x;
+    }
   }
 }
 
-// Rows of column j of a matrix whose first j columns are factored: − Σ_k l_k a_k, k < j; `row` is
-// where those of column 0 start.
-template <class Rows>
-__attribute__((always_inline)) inline void take_columns(const double* a, int row, int j, int stride,
-                                                        Rows& sum) {
+// The same of a column j whose first j columns are factored: − Σ_k l_k a_k, k < j.
+template <int count, class Rows>
+__attribute__((always_inline)) inline void take_columns(const double* a, const int* row, int j,
+                                                        int stride, Rows* sum) {
   Rows w, x, y, z;
   int k = 0;
-  for (; k + 4 <= j; k += 4) {
-    const double* c0 = a + k * stride;
-    const double* c1 = c0 + stride;
+  for (; k + 4 <= j; k += 4, a += 4 * stride) {
+    const double* c1 = a + stride;
     const double* c2 = c1 + stride;
     const double* c3 = c2 + stride;
-    load(c0 + row, w);
-    load(c1 + row, x);
-    load(c2 + row, y);
-    load(c3 + row, z);
-    sum -= (c0[j] * w + c1[j] * x) + (c2[j] * y + c3[j] * z);
+    for (int b = 0; b < count; ++b) {
+      load(a + row[b], w);
+      load(c1 + row[b], x);
+      load(c2 + row[b], y);
+      load(c3 + row[b], z);
+      sum[b] -= (a[j] * w + c1[j] * x) + (c2[j] * y + c3[j] * z);
+    }
   }
-  for (; k < j; ++k) {
-    const double* c = a + k * stride;
-    load(c + row, w);
-    sum -= c[j] * w;
+  for (; k < j; ++k, a += stride) {
+    for (int b = 0; b < count; ++b) {
+      load(a + row[b], w);
+      sum[b] -= a[j] * w;
+    }
   }
+}
+
+// Calls work(blocks, rows) for all rows from `first` to n of a column, at least four, in blocks of
+// four that start at rows[0], rows[1], …: up to three blocks at a time, which share what they are
+// multiplied with. The first block of the first call are the top rows; the others go up from the
+// last row, so that one may overlap the top.
+template <class Work>
+__attribute__((always_inline)) inline void for_blocks(int first, int n, const Work& work) {
+  int i = n - kRows;
+  int rows[3] = {first, i, i - kRows};
+  if (i <= first) return work(std::integral_constant<int, 1>(), rows);
+  if (i - kRows <= first) return work(std::integral_constant<int, 2>(), rows);
+  work(std::integral_constant<int, 3>(), rows);
+  for (i -= 2 * kRows; i > first; i -= 3 * kRows) {
+    for (int b = 0; b < 3; ++b) rows[b] = i - b * kRows;
+    if (rows[1] <= first) return work(std::integral_constant<int, 1>(), rows);
+    if (rows[2] <= first) return work(std::integral_constant<int, 2>(), rows);
+    work(std::integral_constant<int, 3>(), rows);
+  }
+}
+
+// Rows from `first` to n of a column of C, at least four: + Σ_k f_k a_k. The top rows are stored
+// last: the block above them may have started from the same C.
+__attribute__((always_inline)) inline void add_to_rows(const double* a, int first, int n, int m,
+                                                       int a_stride, const double* f, double* c) {
+  Four top = {0.0, 0.0, 0.0, 0.0};
+  for_blocks(first, n, [&](auto count, const int* rows) {
+    Four sum[count];
+    for (int b = 0; b < count; ++b) load(c + rows[b], sum[b]);
+    add_columns<count>(a, rows, m, a_stride, f, sum);
+    for (int b = 0; b < count; ++b) {
+      if (rows[b] == first) {
+        top = sum[b];
+      } else {
+        store(sum[b], c + rows[b]);
+      }
+    }
+  });
+  store(top, c + first);
 }
 
 // 1 / √pivot; zero if that is not a positive finite number.
@@ -81,9 +127,7 @@ inline double inverse_root(double pivot) {
 
 }  // namespace
 
-// Column by column, four rows at a time from the last row up. The top four rows of a column may
-// overlap the four below: they are summed first and stored last, so that both start from the same
-// C. The last columns, shorter than four rows, go row by row.
+// Column by column. The last columns, shorter than four rows, go row by row.
 CODESIGN_BOTH_WIDTHS
 void add_outer_product(double* c, int n, int c_stride, const double* a, int m, int a_stride,
                        double factor) {
@@ -93,39 +137,22 @@ void add_outer_product(double* c, int n, int c_stride, const double* a, int m, i
     for (int j = 0; j < n; ++j) {
       for (int k = 0; k < chunk; ++k) f[k] = factor * a[k * a_stride + j];
       double* column = c + j * c_stride;
-      if (j + kRows > n) {
-        for (int i = j; i < n; ++i) add_columns(a + i, chunk, a_stride, f, column[i]);
-        continue;
+      if (j + kRows <= n) {
+        add_to_rows(a, j, n, chunk, a_stride, f, column);
+      } else {
+        for (int i = j; i < n; ++i) add_columns<1>(a, &i, chunk, a_stride, f, column + i);
       }
-      Four top, sum;
-      load(column + j, top);
-      add_columns(a + j, chunk, a_stride, f, top);
-      for (int i = n - kRows; i > j; i -= kRows) {
-        load(column + i, sum);
-        add_columns(a + i, chunk, a_stride, f, sum);
-        store(sum, column + i);
-      }
-      store(top, column + j);
     }
   }
 }
 
-// Rows as those of one column of add_outer_product.
 CODESIGN_BOTH_WIDTHS
 void add_product(const double* a, int n, int m, int stride, const double* x, double* y) {
-  if (n < kRows) {
-    for (int i = 0; i < n; ++i) add_columns(a + i, m, stride, x, y[i]);
-    return;
+  if (n >= kRows) {
+    add_to_rows(a, 0, n, m, stride, x, y);
+  } else {
+    for (int i = 0; i < n; ++i) add_columns<1>(a, &i, m, stride, x, y + i);
   }
-  Four top, sum;
-  load(y, top);
-  add_columns(a, m, stride, x, top);
-  for (int i = n - kRows; i > 0; i -= kRows) {
-    load(y + i, sum);
-    add_columns(a + i, m, stride, x, sum);
-    store(sum, y + i);
-  }
-  store(top, y);
 }
 
 CODESIGN_BOTH_WIDTHS
@@ -150,23 +177,29 @@ bool cholesky_in_place(double* a, int m, int stride) {
   int j = 0;
   for (; j + kRows <= m; ++j) {
     double* column = a + j * stride;
-    Four top, sum;
-    load(column + j, top);
-    take_columns(a, j, j, stride, top);
-    const double inverse = inverse_root(top[0]);
+    Four top = {0.0, 0.0, 0.0, 0.0};
+    double inverse = 0.0;
+    for_blocks(j, m, [&](auto count, const int* rows) {
+      Four sum[count];
+      for (int b = 0; b < count; ++b) load(column + rows[b], sum[b]);
+      take_columns<count>(a, rows, j, stride, sum);
+      if (rows[0] == j) inverse = inverse_root(sum[0][0]);
+      for (int b = 0; b < count; ++b) {
+        sum[b] *= inverse;
+        if (rows[b] == j) {
+          top = sum[b];
+        } else {
+          store(sum[b], column + rows[b]);
+        }
+      }
+    });
     if (inverse == 0.0) return false;
-    for (int i = m - kRows; i > j; i -= kRows) {
-      load(column + i, sum);
-      take_columns(a, i, j, stride, sum);
-      store(sum * inverse, column + i);
-    }
-    top *= inverse;
     top[0] = inverse;
     store(top, column + j);
   }
   for (; j < m; ++j) {
     double* column = a + j * stride;
-    for (int i = j; i < m; ++i) take_columns(a, i, j, stride, column[i]);
+    for (int i = j; i < m; ++i) take_columns<1>(a, &i, j, stride, column + i);
     const double inverse = inverse_root(column[j]);
     if (inverse == 0.0) return false;
     for (int i = j + 1; i < m; ++i) column[i] *= inverse;

@@ -21,7 +21,7 @@ void Drag::add_forces(const Model& model, const RobotTerms& terms,
   for (const Area& area : areas_) {
     const auto index = static_cast<std::size_t>(area.body);
     const BodyPose& pose = terms.kin.bodies[index];
-    const BodyVelocity& velocity = terms.velocity.bodies[index];
+    const BodyTwist velocity = body_twist(terms, area.body);
     const Vector3d arm = pose.R * area.position;
     add_point_force(model, terms.kin, area.body, pose.p + arm,
                     force(area, velocity.linear + velocity.angular.cross(arm)), generalized);

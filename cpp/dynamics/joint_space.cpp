@@ -1,5 +1,8 @@
 #include "dynamics/joint_space.hpp"
 
+#include <cassert>
+#include <cmath>
+
 #include "dynamics/dense_kernels.hpp"
 #include "dynamics/model.hpp"
 
@@ -13,33 +16,55 @@ JointSpace::JointSpace(int joints)
       pivots_(Eigen::VectorXi::Zero(joints)),
       joint_acceleration_(Eigen::VectorXd::Zero(joints)) {}
 
-bool JointSpace::set_mass_matrix(const Eigen::Ref<const Eigen::MatrixXd>& M) {
+bool JointSpace::reduce(const Eigen::Ref<const Eigen::MatrixXd>& M) {
   const Eigen::Index n = joint_inertia_.rows();
   const int size = static_cast<int>(n);
+  factored_ = false;
   base_.compute(M.topLeftCorner<kBaseDofs, kBaseDofs>());
   if (base_.info() != Eigen::Success) return false;
+  const Matrix6d L = base_.matrixL();
   coupling_ = M.bottomLeftCorner(n, kBaseDofs);
-  half_ = coupling_;
-  base_.matrixL().transpose().solveInPlace<Eigen::OnTheRight>(half_);
+  for (int k = 0; k < kBaseDofs; ++k) {
+    auto column = half_.col(k);
+    column = coupling_.col(k);
+    for (int i = 0; i < k; ++i) column -= L(k, i) * half_.col(i);
+    column *= 1.0 / L(k, k);
+  }
   joint_inertia_ = M.bottomRightCorner(n, n);
   add_outer_product(joint_inertia_.data(), size, size, half_.data(), kBaseDofs, size, -1.0);
-  joint_inertia_.triangularView<Eigen::StrictlyUpper>() = joint_inertia_.transpose();
+  for (int j = 0; j < size; ++j) {
+    for (int i = 0; i < j; ++i) joint_inertia_(i, j) = joint_inertia_(j, i);
+  }
+  return std::isfinite(joint_inertia_.sum());
+}
+
+bool JointSpace::factor() {
+  if (factored_) return true;
+  const int size = static_cast<int>(joint_inertia_.rows());
   factor_ = joint_inertia_;
   definite_ = cholesky_in_place(factor_.data(), size, size);
-  if (definite_) return true;
-  if (!joint_inertia_.allFinite()) return false;
-  factor_ = joint_inertia_;
-  return lu_in_place(factor_.data(), size, size, pivots_.data());
+  if (!definite_) {
+    factor_ = joint_inertia_;
+    if (!lu_in_place(factor_.data(), size, size, pivots_.data())) return false;
+  }
+  factored_ = true;
+  return true;
+}
+
+bool JointSpace::set_mass_matrix(const Eigen::Ref<const Eigen::MatrixXd>& M) {
+  return reduce(M) && factor();
 }
 
 void JointSpace::reduce_force(const Eigen::Ref<const Eigen::VectorXd>& force,
                               Eigen::VectorXd& joint_force) const {
-  const Vector6d base_force = force.head<kBaseDofs>();
-  joint_force = force.tail(joint_inertia_.rows());
-  joint_force.noalias() -= half_ * base_.matrixL().solve(base_force);
+  const int size = static_cast<int>(joint_inertia_.rows());
+  const Vector6d base_force = -base_.matrixL().solve(force.head<kBaseDofs>());
+  joint_force = force.tail(size);
+  add_product(half_.data(), size, kBaseDofs, size, base_force.data(), joint_force.data());
 }
 
 void JointSpace::solve_joint_inertia(Eigen::VectorXd& x) const {
+  assert(factored_);
   const int size = static_cast<int>(joint_inertia_.rows());
   if (definite_) {
     cholesky_solve(factor_.data(), size, size, x.data());

@@ -15,7 +15,11 @@ class JointSpace {
  public:
   explicit JointSpace(int joints);
 
-  // M (6+n, 6+n) symmetric. False if M is singular or not finite.
+  // M (6+n, 6+n) symmetric. False if M is singular or not finite. Its first half is enough for the
+  // joint inertia and for reduce_force(): false if the base's block is singular, M̂ not finite. Its
+  // second half factors M̂: false if that is singular.
+  bool reduce(const Eigen::Ref<const Eigen::MatrixXd>& M);
+  bool factor();
   bool set_mass_matrix(const Eigen::Ref<const Eigen::MatrixXd>& M);
 
   const Eigen::MatrixXd& joint_inertia() const { return joint_inertia_; }  // M̂ (n, n), full
@@ -24,10 +28,10 @@ class JointSpace {
   void reduce_force(const Eigen::Ref<const Eigen::VectorXd>& force,
                     Eigen::VectorXd& joint_force) const;
 
-  // x becomes M̂⁻¹ x.
+  // x becomes M̂⁻¹ x. M̂ is factored.
   void solve_joint_inertia(Eigen::VectorXd& x) const;
 
-  // ν̇ (6+n,) for torques tau (n,) and all other forces f (6+n,).
+  // ν̇ (6+n,) for torques tau (n,) and all other forces f (6+n,). M̂ is factored.
   void acceleration(const Eigen::Ref<const Eigen::VectorXd>& tau,
                     const Eigen::Ref<const Eigen::VectorXd>& force, Eigen::VectorXd& nu_dot);
 
@@ -39,7 +43,7 @@ class JointSpace {
   Eigen::MatrixXd factor_;  // of M̂: Cholesky's, or L and U where it is indefinite
   Eigen::VectorXi pivots_;
   Eigen::VectorXd joint_acceleration_;
-  bool definite_ = true;
+  bool definite_ = true, factored_ = false;
 };
 
 }  // namespace codesign::dynamics

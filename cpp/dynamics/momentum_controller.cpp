@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 ControllerOrigin controller_origin(const FlightSettings& settings, const RobotState& state,
                                    const RobotTerms& terms) {
-  const Matrix3d inertia = state.base.R.transpose() * locked_inertia(terms.inertia) * state.base.R;
+  const Matrix3d inertia = state.base.R.transpose() * terms.robot.inertia * state.base.R;
   const bool own = settings.posture_reference.size() > 0;
   return {inertia, inertia.inverse(), own ? settings.posture_reference : state.joints};
 }
@@ -19,7 +19,7 @@ ControllerOrigin controller_origin(const FlightSettings& settings, const RobotSt
 Vector6d modeled_momentum_rate(const RobotTerms& terms, const Eigen::Ref<const Matrix6Xd>& A,
                                const Eigen::Ref<const Eigen::VectorXd>& thrusts) {
   Vector6d rate = A * thrusts;
-  rate[2] -= terms.inertia.subtrees[0].mass * kGravity;
+  rate[2] -= terms.robot.mass * kGravity;
   return rate;
 }
 
@@ -91,7 +91,7 @@ void build_momentum_task(const Model& model, const FlightSettings& settings,
   const Matrix6Xd& C = terms.momentum_matrix;
   const Matrix6Xd& Lambda = task.Lambda;
   const Eigen::Index joint_columns = kBaseDofs;
-  const double mass = terms.inertia.subtrees[0].mass;
+  const double mass = terms.robot.mass;
   const Vector6d base_velocity = state.velocity.head<kBaseDofs>();
   const Vector6d momentum_rate = modeled_momentum_rate(terms, task.A, thrusts) + unmodeled;
 
@@ -124,8 +124,7 @@ void build_momentum_task(const Model& model, const FlightSettings& settings,
       wanted_angular_acceleration(gains, origin, state, momentum_rate.tail<3>(), reference);
   const Vector3d omega = R.transpose() * base_velocity.tail<3>();
   task.offset.tail<3>() =
-      R.transpose() * (locked_inertia(terms.inertia) * base_velocity.tail<3>()) -
-      origin.base_inertia * omega;
+      R.transpose() * (terms.robot.inertia * base_velocity.tail<3>()) - origin.base_inertia * omega;
 }
 
 namespace {

@@ -125,7 +125,9 @@ bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs,
 
 bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                     RobotState& state) {
+  if (bodies_ && terms.paired) return advance(inputs, state, &*terms.paired);
   if (!has_model_masses_) return advance(inputs, state);
+  if (!joint_space.factor()) return false;
   for (int i = 0; i < substeps_; ++i) {
     if (i == 0) {
       acceleration(state, terms, joint_space, inputs);

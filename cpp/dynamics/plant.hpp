@@ -27,8 +27,9 @@ class Plant {
  public:
   Plant(const Model& model, const FlightSettings& settings);
 
-  // terms and joint_space are those of the undisturbed robot at `state`; the first stage uses them
-  // if the plant has the model's masses. False if the mass matrix is singular or not finite.
+  // terms and joint_space are those of the undisturbed robot at `state`; where bodies share a
+  // joint, the first stage uses them if the plant has the model's masses, else the bodies' motion.
+  // False if the mass matrix is singular or not finite.
   bool advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                RobotState& state);
 

@@ -10,7 +10,12 @@ using Eigen::Vector3d;
 
 RobotTerms::RobotTerms(const Model& model, const std::vector<Actuator>& actuators,
                        Eigen::VectorXd rotors)
-    : kin(model), velocity(model), inertia(model), forces(model), rotor_inertia(std::move(rotors)) {
+    : kin(model) {
+  if (model.fixed_base || model.mimics) {
+    singly.emplace(model).rotor_inertia = std::move(rotors);
+  } else {
+    paired.emplace(model, rotors);
+  }
   mass_matrix.setZero(model.dofs(), model.dofs());
   bias.setZero(model.dofs());
   momentum_matrix.setZero(6, model.dofs());
@@ -27,23 +32,49 @@ RobotTerms::RobotTerms(const Model& model, const std::vector<Actuator>& actuator
   }
 }
 
+RobotTerms::Singly::Singly(const Model& model) : velocity(model), inertia(model), forces(model) {}
+
+namespace {
+
+void move_paired(const RobotState& state, RobotTerms& terms) {
+  PairedBodies& bodies = *terms.paired;
+  bodies.move(state.base.R, state.joints, state.velocity);
+  terms.kin.base_position = state.base.p;
+  bodies.write_poses(terms.kin.bodies);
+  bodies.write_mass_matrix(terms.mass_matrix, terms.momentum_matrix, terms.robot);
+  bodies.generalized_forces(terms.bias);
+  terms.bias = -terms.bias;
+}
+
+void move_singly(const Model& model, const RobotState& state, RobotTerms& terms) {
+  RobotTerms::Singly& bodies = *terms.singly;
+  forward_kinematics(model, state.base, state.joints, terms.kin);
+  forward_velocities(model, terms.kin, state.velocity, bodies.velocity);
+  compute_inertias(model, terms.kin, bodies.inertia);
+  mass_matrix(model, terms.kin, bodies.inertia, terms.mass_matrix);
+  if (bodies.rotor_inertia.size() > 0) {
+    terms.mass_matrix.diagonal().tail(model.joint_count()) += bodies.rotor_inertia;
+  }
+  centroidal_momentum_matrix(model, terms.kin, bodies.inertia, terms.momentum_matrix);
+  bias_forces(model, terms.kin, bodies.inertia, bodies.velocity, bodies.forces, terms.bias);
+  terms.robot = bodies.inertia.subtrees[0];
+}
+
+}  // namespace
+
 void update_terms(const Model& model, const RobotState& state, RobotTerms& terms) {
   update_motion_terms(model, state, terms);
-  centroidal_momentum_matrix(model, terms.kin, terms.inertia, terms.momentum_matrix);
   terms.momentum.noalias() = terms.momentum_matrix * state.velocity;
 }
 
 void update_motion_terms(const Model& model, const RobotState& state, RobotTerms& terms) {
-  forward_kinematics(model, state.base, state.joints, terms.kin);
-  forward_velocities(model, terms.kin, state.velocity, terms.velocity);
-  compute_inertias(model, terms.kin, terms.inertia);
-  mass_matrix(model, terms.kin, terms.inertia, terms.mass_matrix);
-  if (terms.rotor_inertia.size() > 0) {
-    terms.mass_matrix.diagonal().tail(model.joint_count()) += terms.rotor_inertia;
+  if (terms.paired) {
+    move_paired(state, terms);
+  } else {
+    move_singly(model, state, terms);
   }
-  bias_forces(model, terms.kin, terms.inertia, terms.velocity, terms.forces, terms.bias);
-  terms.com = center_of_mass(terms.kin, terms.inertia);
-  const Vector3d com_offset = terms.inertia.subtrees[0].com;
+  const Vector3d com_offset = terms.robot.com;
+  terms.com = terms.kin.base_position + com_offset;
   for (MountedActuator& jet : terms.jets) {
     const Frame& frame = model.frames[static_cast<std::size_t>(jet.frame)];
     const BodyPose& body = terms.kin.bodies[static_cast<std::size_t>(frame.body)];
@@ -51,6 +82,13 @@ void update_motion_terms(const Model& model, const RobotState& state, RobotTerms
     jet.origin = body.p + body.R * frame.body_T_frame.p;
     jet.arm = jet.origin - com_offset;
   }
+}
+
+BodyTwist body_twist(const RobotTerms& terms, int body) {
+  if (terms.paired)
+    return {terms.paired->linear_velocity(body), terms.paired->angular_velocity(body)};
+  const BodyVelocity& velocity = terms.singly->velocity.bodies[static_cast<std::size_t>(body)];
+  return {velocity.linear, velocity.angular};
 }
 
 void add_jet_forces(const Model& model, const RobotTerms& terms,
@@ -90,7 +128,7 @@ void add_point_force(const Model& model, const KinematicsData& kin, int body, co
 void add_com_force(const RobotTerms& terms, const Vector3d& force,
                    Eigen::Ref<Eigen::VectorXd> generalized) {
   generalized.head<3>() += force;
-  generalized.segment<3>(3) += terms.inertia.subtrees[0].com.cross(force);
+  generalized.segment<3>(3) += terms.robot.com.cross(force);
 }
 
 void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A) {
@@ -109,7 +147,7 @@ void jet_map_rate(const Model& model, const RobotTerms& terms,
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
     total += thrusts[static_cast<Eigen::Index>(i)] * terms.jets[i].axis;
   }
-  const double per_mass = 1.0 / terms.inertia.subtrees[0].mass;
+  const double per_mass = 1.0 / terms.robot.mass;
   Lambda.topRows<3>().setZero();
   for (Eigen::Index j = 0; j < Lambda.cols(); ++j) {
     Lambda.col(j).tail<3>() = total.cross(per_mass * terms.momentum_matrix.col(j).head<3>());

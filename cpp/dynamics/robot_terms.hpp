@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dynamics/actuator.hpp"
 #include "dynamics/centroidal.hpp"
+#include "dynamics/paired/paired_bodies.hpp"
 #include "dynamics/rigid_body.hpp"
 
 namespace codesign::dynamics {
@@ -37,23 +39,38 @@ struct RobotTerms {
              Eigen::VectorXd rotor_inertia = {});
 
   KinematicsData kin;
-  VelocityData velocity;
-  InertiaData inertia;
-  ForceData forces;
-  Eigen::VectorXd rotor_inertia;
+  RigidInertia robot;           // as one body; center of mass from the base origin, world axes
   Eigen::MatrixXd mass_matrix;  // M (6+n, 6+n), rotors included
   Eigen::VectorXd bias;         // b (6+n,)
   Matrix6Xd momentum_matrix;    // C (6, 6+n)
   Vector6d momentum;            // (l; w) about the center of mass
   Eigen::Vector3d com;          // in the world [m]
   std::vector<MountedActuator> jets;
+
+  // What the terms are made with: bodies two at a time, or one by one where the base is fixed or
+  // bodies share a joint.
+  struct Singly {
+    explicit Singly(const Model& model);
+    VelocityData velocity;
+    InertiaData inertia;
+    ForceData forces;
+    Eigen::VectorXd rotor_inertia;
+  };
+  std::optional<PairedBodies> paired;
+  std::optional<Singly> singly;
 };
 
 // Writes all terms of a state.
 void update_terms(const Model& model, const RobotState& state, RobotTerms& terms);
 
-// All but momentum and its matrix: what the equations of motion need.
+// All but the momentum: what the equations of motion need.
 void update_motion_terms(const Model& model, const RobotState& state, RobotTerms& terms);
+
+// Velocity of a body's origin [m/s] and its angular velocity [rad/s], world axes.
+struct BodyTwist {
+  Eigen::Vector3d linear, angular;
+};
+BodyTwist body_twist(const RobotTerms& terms, int body);
 
 // generalized (6+n,) += Jᵀ force at a point of a body; point from the base origin, world axes.
 void add_point_force(const Model& model, const KinematicsData& kin, int body,

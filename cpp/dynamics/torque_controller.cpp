@@ -7,11 +7,11 @@ namespace codesign::dynamics {
 namespace {
 
 // ‖ε M̂²‖ up to which the system counts as near the identity. A step of conjugate gradients then
-// leaves a fortieth of the error at most, so that kMostSteps end with kSolved, a residual below the
-// rounding of the right-hand side.
+// leaves a fortieth of the error at most, so that kMostSteps end with kSolved, a residual of a few
+// roundings of the right-hand side.
 constexpr double kNearIdentity = 0.1;
-constexpr int kMostSteps = 11;
-constexpr double kSolved = 0x1p-54;
+constexpr int kMostSteps = 10;
+constexpr double kSolved = 0x1p-48;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void TorqueController::solve_near_identity(const Eigen::MatrixXd& inertia) {
   }
 }
 
-QpStatus TorqueController::update(const JointSpace& joint_space,
+QpStatus TorqueController::update(JointSpace& joint_space,
                                   const Eigen::Ref<const Eigen::VectorXd>& joint_force,
                                   const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
                                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity) {
@@ -86,7 +86,7 @@ QpStatus TorqueController::update(const JointSpace& joint_space,
   return follow(joint_space, joint_force, joint_velocity, commanded_velocity);
 }
 
-QpStatus TorqueController::follow(const JointSpace& joint_space,
+QpStatus TorqueController::follow(JointSpace& joint_space,
                                   const Eigen::Ref<const Eigen::VectorXd>& joint_force,
                                   const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
                                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity) {
@@ -121,7 +121,8 @@ QpStatus TorqueController::follow(const JointSpace& joint_space,
 }
 
 // The same problem with its limits, on the explicit W: (W² + εI), −W² right_side.
-QpStatus TorqueController::solve_within_limits(const JointSpace& joint_space) {
+QpStatus TorqueController::solve_within_limits(JointSpace& joint_space) {
+  if (!joint_space.factor()) return QpStatus::kNotPositiveDefinite;
   const int n = static_cast<int>(inverse_.rows());
   for (Eigen::Index j = 0; j < n; ++j) {
     gradient_.setZero();

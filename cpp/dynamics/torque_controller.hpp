@@ -15,16 +15,14 @@ class TorqueController {
   explicit TorqueController(const FlightSettings& settings);
 
   // joint_force: f̂ of everything but the torques. Returns the status of the torque QP.
-  QpStatus update(const JointSpace& joint_space,
-                  const Eigen::Ref<const Eigen::VectorXd>& joint_force,
+  QpStatus update(JointSpace& joint_space, const Eigen::Ref<const Eigen::VectorXd>& joint_force,
                   const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity);
 
   // The two halves of it: renew() takes the joint-space inertia into the least squares, false if
   // that is not positive definite; follow() may be called again with the inertia taken last.
   bool renew(const JointSpace& joint_space);
-  QpStatus follow(const JointSpace& joint_space,
-                  const Eigen::Ref<const Eigen::VectorXd>& joint_force,
+  QpStatus follow(JointSpace& joint_space, const Eigen::Ref<const Eigen::VectorXd>& joint_force,
                   const Eigen::Ref<const Eigen::VectorXd>& joint_velocity,
                   const Eigen::Ref<const Eigen::VectorXd>& commanded_velocity);
 
@@ -33,7 +31,7 @@ class TorqueController {
 
  private:
   void solve_near_identity(const Eigen::MatrixXd& inertia);
-  QpStatus solve_within_limits(const JointSpace& joint_space);
+  QpStatus solve_within_limits(JointSpace& joint_space);
 
   double step_, proportional_, integral_, weight_, limit_, rate_limit_;
   bool used_once_;  // every inertia, between two calls of renew()

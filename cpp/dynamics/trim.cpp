@@ -98,7 +98,7 @@ void HoverTrim::linearize() {
   jet_map_rate(model_, terms_, thrusts, rate);
   const Vector6d wrench = A * thrusts;
   residual_ = wrench;
-  residual_[2] -= terms_.inertia.subtrees[0].mass * kGravity;
+  residual_[2] -= terms_.robot.mass * kGravity;
   for (Index i = 0; i < tilt(); ++i) {
     jacobian_.col(i) = rate.col(kBaseDofs + moving_[static_cast<std::size_t>(i)]);
   }

@@ -135,7 +135,7 @@ FailureReason Flight::advance_plant(int k) {
         bodies_->move(state_.base.R, state_.joints, state_.velocity);
       } else {
         update_motion_terms(model_, state_, terms_);
-        if (!joint_space_.set_mass_matrix(terms_.mass_matrix)) return FailureReason::kSingularMass;
+        if (!joint_space_.reduce(terms_.mass_matrix)) return FailureReason::kSingularMass;
       }
       const FailureReason reason = k > 0 ? update_torque(held) : FailureReason::kNotFailed;
       if (reason != FailureReason::kNotFailed) return reason;
@@ -169,7 +169,7 @@ void Flight::advance_jets(int k) {
 
 bool Flight::update_dynamics() {
   update_terms(model_, state_, terms_);
-  return joint_space_.set_mass_matrix(terms_.mass_matrix);
+  return joint_space_.reduce(terms_.mass_matrix);
 }
 
 // Items 3 to 5: references, momentum QP, torques.
@@ -254,7 +254,7 @@ void Flight::log_sample(int k) {
   log.com_velocity_reference.row(k) = reference_.velocity.transpose();
   write_rotation(reference_.rotation, log.rotation_reference, k);
   log.angular_velocity_reference.row(k) = reference_.angular_velocity.transpose();
-  const double mass = terms_.inertia.subtrees[0].mass;
+  const double mass = terms_.robot.mass;
   Vector6d error = terms_.momentum;
   error.head<3>() -= mass * reference_.velocity;
   error.tail<3>() -= reference_.rotation * (origin_.base_inertia * reference_.angular_velocity);

@@ -148,7 +148,7 @@ void PredictiveFlight::log_sample(int k) {
   log.angular_velocity_reference.row(k) = (state_.base.R.transpose() * turning).transpose();
   Vector6d error = terms_.momentum;
   error.head<3>() -= model_.total_mass * path.velocity.head<3>();
-  error.tail<3>() -= locked_inertia(terms_.inertia) * turning;
+  error.tail<3>() -= terms_.robot.inertia * turning;
   log.momentum_error.row(k) = error.transpose();
   log.thrust.row(k) = thrust_.transpose();
   for (std::size_t j = 0; j < jets_.size(); ++j) {

@@ -52,6 +52,11 @@ struct LaneSymmetric {
   LaneVector column_z() const { return {xz, yz, zz}; }
 };
 
+// Sum for both.
+inline LaneSymmetric operator+(const LaneSymmetric& a, const LaneSymmetric& b) {
+  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
+}
+
 // Matrix times vector, for both.
 inline LaneVector operator*(const LaneSymmetric& m, const LaneVector& v) {
   return {dot(m.column_x(), v), dot(m.column_y(), v), dot(m.column_z(), v)};

@@ -16,10 +16,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-LaneSymmetric operator+(const LaneSymmetric& a, const LaneSymmetric& b) {
-  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
-}
-
 LaneMatrix operator+(const LaneMatrix& a, const LaneMatrix& b) {
   return {a.a + b.a, a.b + b.b, a.c + b.c};
 }
@@ -42,6 +38,7 @@ PairedBodies::PairedBodies(const Model& model, const Eigen::VectorXd& rotor_iner
     : places_(model.bodies.size()) {
   assert(!model.fixed_base && !model.mimics);
   place_bodies(model);
+  for (int row = 1; row < static_cast<int>(rows_.size()); ++row) find_ancestors(row);
   for (Row& row : rows_) {
     row.rotor = lanes(0.0, 0.0);
     for (int lane = 0; lane < 2 && rotor_inertia.size() > 0 && &row != rows_.data(); ++lane) {

@@ -39,6 +39,12 @@ class PairedBodies {
   // A force on a body and a moment about its origin, world axes.
   void push(int body, const Eigen::Vector3d& force, const Eigen::Vector3d& moment);
 
+  // Terms of all bodies at the state of the last move(), which pushes leave alone. M (6+n, 6+n),
+  // rotors included, and C (6, 6+n) as in robot_terms.hpp: entries are written that are not zero at
+  // every state. Bodies as kinematics.hpp has them. The robot as one body, from the base's origin.
+  void write_mass_matrix(Eigen::MatrixXd& M, Matrix6Xd& C, RigidInertia& robot);
+  void write_poses(std::vector<BodyPose>& poses) const;
+
   // f (6+n,) of M ν̇ = (0; tau) + f: gravity, Coriolis and centrifugal forces, and the pushes.
   void generalized_forces(Eigen::Ref<Eigen::VectorXd> forces);
 
@@ -65,6 +71,22 @@ class PairedBodies {
   struct Acceleration {
     LaneVector linear, angular;
   };
+  // Inertia about the base's origin: mass, mass times center, moments.
+  struct Composite {
+    Lanes mass;
+    LaneVector first;
+    LaneSymmetric second;
+  };
+  // Motion per unit of a joint, or momentum, about the base's origin.
+  struct Twist {
+    LaneVector linear, angular;
+  };
+  // A row below another on the way to the base, and the lanes that its own two lanes lead to.
+  struct Ancestor {
+    int row = 0;
+    std::array<int, 2> lane = {0, 1};
+    bool straight = false;  // lane for lane
+  };
   // Two bodies, or one in both lanes.
   struct Row {
     std::array<int, 2> body = {0, 0}, joint = {0, 0};
@@ -85,9 +107,15 @@ class PairedBodies {
     LaneVector joint_force, joint_moment;
     Lanes per_joint_inertia, force_left;
     Acceleration acceleration;
+    std::vector<Ancestor> ancestors;  // with the row itself, without the base
+    Composite composite;
+    Twist twist;
   };
 
   void place_bodies(const Model& model);
+  void find_ancestors(int row);
+  void start_composites();
+  void write_column(const Row& row, const Eigen::Vector3d& com, Eigen::MatrixXd& M, Matrix6Xd& C);
   void add_row(const Model& model, int first, int second);
   void move_row(Row& row, const double* joints, const double* rates);
   static void start_row(Row& row);

@@ -98,7 +98,7 @@ Matrix3d PredictionModelBuilder::world_R_body(const RobotTerms& terms) const {
 
 Vector3d PredictionModelBuilder::angular_velocity(const RobotTerms& terms) const {
   const Frame& frame = model_.frames[static_cast<std::size_t>(body_)];
-  return terms.velocity.bodies[static_cast<std::size_t>(frame.body)].angular;
+  return body_twist(terms, frame.body).angular;
 }
 
 Vector3d PredictionModelBuilder::body_rpy(const RobotTerms& terms, const Vector3d& near) const {
@@ -124,10 +124,10 @@ void PredictionModelBuilder::build(const RobotTerms& terms, const PredictionStat
                                    const Eigen::VectorXd& variables, PredictionModel& prediction) {
   const Matrix3d R = world_R_body(terms);
   const Matrix3d body_R_world = R.transpose();
-  prediction.mass = terms.inertia.subtrees[0].mass;
+  prediction.mass = terms.robot.mass;
   prediction.world_R_body = R;
   prediction.angular_velocity = body_R_world * angular_velocity(terms);
-  prediction.inertia = body_R_world * locked_inertia(terms.inertia) * R;
+  prediction.inertia = body_R_world * terms.robot.inertia * R;
   prediction.rpy = state.rpy;
   const Matrix3d momentum_per_rpy_rate =
       prediction.inertia * rpy_rate_to_angular_velocity(state.rpy);

@@ -97,7 +97,7 @@ TEST_F(MomentumControllerTest, LinearTaskIsTheErrorOfTheMomentumLaw) {
   Matrix6Xd A(6, 4), Lambda(6, 12);
   jet_map(terms_, A);
   jet_map_rate(model_, terms_, thrusts_, Lambda);
-  const double m = terms_.inertia.subtrees[0].mass;
+  const double m = terms_.robot.mass;
   const Vector3d acceleration = (A * u.head(4) + Lambda * nu).head<3>();
   const Vector3d rate = (A * thrusts_).head<3>() - Vector3d(0.0, 0.0, m * kGravity);
   const Vector3d momentum = (terms_.momentum_matrix * nu).head<3>();

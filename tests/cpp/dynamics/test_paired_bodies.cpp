@@ -143,6 +143,37 @@ TEST(PairedBodies, AreWhereTheKinematicsHaveThem) {
   }
 }
 
+TEST(PairedBodies, HaveTheMassMatrixAndTheMomentumMatrixOfTheTree) {
+  for (const Model& model : floating_trees()) {
+    const State state = random_state(model, 16);
+    Sample sample(model, state);
+    const Eigen::VectorXd rotors = random_vector(model.joint_count(), 17).cwiseAbs();
+    PairedBodies bodies(model, rotors);
+    bodies.move(state.base.R, state.s, state.nu);
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(model.dofs(), model.dofs());
+    Matrix6Xd C = Matrix6Xd::Zero(6, model.dofs()), expected_C = C;
+    RigidInertia robot;
+    bodies.write_mass_matrix(M, C, robot);
+    Eigen::MatrixXd expected = sample.M();
+    expected.diagonal().tail(model.joint_count()) += rotors;
+    centroidal_momentum_matrix(model, sample.kin, sample.inertia, expected_C);
+    EXPECT_LT(relative_error(M, expected), 1e-13);
+    EXPECT_EQ(M, M.transpose());
+    EXPECT_LT(relative_error(C, expected_C), 1e-13);
+    const RigidInertia& all = sample.inertia.subtrees[0];
+    EXPECT_NEAR(robot.mass, all.mass, 1e-13 * all.mass);
+    EXPECT_LT((robot.com - all.com).norm(), 1e-13);
+    EXPECT_LT((robot.inertia - all.inertia).norm(), 1e-12 * all.inertia.norm());
+    std::vector<BodyPose> poses(model.bodies.size());
+    bodies.write_poses(poses);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_LT((poses[i].R - sample.kin.bodies[i].R).norm(), 1e-13);
+      EXPECT_LT((poses[i].p - sample.kin.bodies[i].p).norm(), 1e-13);
+      EXPECT_LT((poses[i].offset - sample.kin.bodies[i].offset).norm(), 1e-13);
+    }
+  }
+}
+
 TEST(PairedBodies, TakeAnotherInertia) {
   for (Model model : floating_trees()) {
     const State state = random_state(model, 12);

@@ -50,9 +50,13 @@ class PlantTest : public ::testing::Test {
   }
 
   double energy(const RobotState& state) const {
-    const RobotTerms t = terms_at(state);
-    return kinetic_energy(model_, t.kin, t.inertia, t.velocity) +
-           potential_energy(t.kin, t.inertia);
+    KinematicsData kin(model_);
+    forward_kinematics(model_, state.base, state.joints, kin);
+    VelocityData velocity(model_);
+    forward_velocities(model_, kin, state.velocity, velocity);
+    InertiaData inertia(model_);
+    compute_inertias(model_, kin, inertia);
+    return kinetic_energy(model_, kin, inertia, velocity) + potential_energy(kin, inertia);
   }
 
   static double distance(const RobotState& a, const RobotState& b) {

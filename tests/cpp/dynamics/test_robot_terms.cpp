@@ -72,13 +72,16 @@ TEST_P(RobotTermsTest, JetMapIsTheRateOfTheMomentum) {
     ASSERT_TRUE(joint_space.set_mass_matrix(terms.mass_matrix));
     Eigen::VectorXd nu_dot(model_.dofs());
     joint_space.acceleration(10.0 * random_vector(random_, model_.joint_count()), force, nu_dot);
-    const Vector6d rate =
-        terms.momentum_matrix * nu_dot +
-        centroidal_momentum_bias(model_, terms.kin, terms.inertia, terms.velocity);
+    VelocityData velocity(model_);
+    forward_velocities(model_, terms.kin, state.velocity, velocity);
+    InertiaData inertia(model_);
+    compute_inertias(model_, terms.kin, inertia);
+    const Vector6d rate = terms.momentum_matrix * nu_dot +
+                          centroidal_momentum_bias(model_, terms.kin, inertia, velocity);
     Matrix6Xd A(6, 4);
     jet_map(terms, A);
     Vector6d expected = A * thrusts;
-    expected[2] -= terms.inertia.subtrees[0].mass * kGravity;
+    expected[2] -= terms.robot.mass * kGravity;
     EXPECT_LT((rate - expected).norm(), 1e-9 * expected.norm());
   }
 }
