@@ -9,9 +9,9 @@
 #include "bindings/bindings.hpp"
 #include "bindings/own_plant.hpp"
 #include "bindings/py_model.hpp"
-#include "dynamics/box_qp.hpp"
 #include "dynamics/flight/flight.hpp"
 #include "dynamics/flight/flight_start.hpp"
+#include "dynamics/qp/box_qp.hpp"
 
 namespace py = pybind11;
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "dynamics/box_qp.hpp"
 #include "dynamics/flight_settings.hpp"
+#include "dynamics/qp/box_qp.hpp"
 #include "dynamics/reference.hpp"
 #include "dynamics/robot_terms.hpp"
 

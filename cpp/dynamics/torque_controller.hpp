@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "dynamics/box_qp.hpp"
 #include "dynamics/flight_settings.hpp"
 #include "dynamics/joint_space.hpp"
+#include "dynamics/qp/box_qp.hpp"
 
 namespace codesign::dynamics {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "dynamics/box_qp.hpp"
 #include "dynamics/predictive/condensed_qp.hpp"
+#include "dynamics/qp/box_qp.hpp"
 #include "dynamics/waypoints.hpp"
 
 namespace codesign::dynamics {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "dynamics/box_qp.hpp"
+#include "dynamics/qp/box_qp.hpp"
 
 namespace codesign::dynamics {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "dynamics/qp_objective.hpp"
+#include "dynamics/qp/qp_objective.hpp"
 
 namespace codesign::dynamics {
 

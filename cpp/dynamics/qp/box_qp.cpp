@@ -1,4 +1,4 @@
-#include "dynamics/box_qp.hpp"
+#include "dynamics/qp/box_qp.hpp"
 
 #include <algorithm>
 #include <cmath>

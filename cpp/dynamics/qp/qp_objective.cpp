@@ -1,4 +1,4 @@
-#include "dynamics/qp_objective.hpp"
+#include "dynamics/qp/qp_objective.hpp"
 
 #include <algorithm>
 #include <cmath>
