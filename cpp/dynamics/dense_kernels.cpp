@@ -31,24 +31,27 @@ __attribute__((always_inline)) inline void store(const Four& rows, double* to) {
 }
 
 // Of one column of C, `count` blocks of four rows (or of one, as a plain double) that start at
-// `row`: + Σ_k f_k a_k.
-template <int count, class Rows>
+// `row`: + Σ_k f_k a_k, f_k = factor(k).
+template <int count, class Rows, class Factor>
 __attribute__((always_inline)) inline void add_columns(const double* a, const int* row, int m,
-                                                       int a_stride, const double* f, Rows* sum) {
+                                                       int a_stride, const Factor& factor,
+                                                       Rows* sum) {
   Rows x, y, z;
   int k = 0;
   for (; k + 3 <= m; k += 3, a += 3 * a_stride) {
+    const double f = factor(k), g = factor(k + 1), h = factor(k + 2);
     for (int b = 0; b < count; ++b) {
       load(a + row[b], x);
       load(a + a_stride + row[b], y);
       load(a + 2 * a_stride + row[b], z);
-      sum[b] += f[k] * x + f[k + 1] * y + f[k + 2] * z;
+      sum[b] += f * x + g * y + h * z;
     }
   }
   for (; k < m; ++k, a += a_stride) {
+    const double f = factor(k);
     for (int b = 0; b < count; ++b) {
       load(a + row[b], x);
-      sum[b] += f[k] * x;
+      sum[b] += f * x;
     }
   }
 }
@@ -100,13 +103,15 @@ __attribute__((always_inline)) inline void for_blocks(int first, int n, const Wo
 
 // Rows from `first` to n of a column of C, at least four: + Σ_k f_k a_k. The top rows are stored
 // last: the block above them may have started from the same C.
+template <class Factor>
 __attribute__((always_inline)) inline void add_to_rows(const double* a, int first, int n, int m,
-                                                       int a_stride, const double* f, double* c) {
+                                                       int a_stride, const Factor& factor,
+                                                       double* c) {
   Four top = {0.0, 0.0, 0.0, 0.0};
   for_blocks(first, n, [&](auto count, const int* rows) {
     Four sum[count];
     for (int b = 0; b < count; ++b) load(c + rows[b], sum[b]);
-    add_columns<count>(a, rows, m, a_stride, f, sum);
+    add_columns<count>(a, rows, m, a_stride, factor, sum);
     for (int b = 0; b < count; ++b) {
       if (rows[b] == first) {
         top = sum[b];
@@ -131,27 +136,35 @@ inline double inverse_root(double pivot) {
 CODESIGN_BOTH_WIDTHS
 void add_outer_product(double* c, int n, int c_stride, const double* a, int m, int a_stride,
                        double factor) {
-  double f[kChunk];
   for (int start = 0; start < m; start += kChunk, a += kChunk * a_stride) {
     const int chunk = std::min(kChunk, m - start);
     for (int j = 0; j < n; ++j) {
-      for (int k = 0; k < chunk; ++k) f[k] = factor * a[k * a_stride + j];
+      const auto scaled = [=](int k) { return factor * a[k * a_stride + j]; };
       double* column = c + j * c_stride;
       if (j + kRows <= n) {
-        add_to_rows(a, j, n, chunk, a_stride, f, column);
+        add_to_rows(a, j, n, chunk, a_stride, scaled, column);
       } else {
-        for (int i = j; i < n; ++i) add_columns<1>(a, &i, chunk, a_stride, f, column + i);
+        for (int i = j; i < n; ++i) add_columns<1>(a, &i, chunk, a_stride, scaled, column + i);
       }
     }
   }
 }
 
+void mirror(double* a, int n) {
+  for (int j = 1; j < n; ++j) {
+    double* column = a + j * n;
+    const double* across = a + j;
+    for (int i = 0; i < j; ++i, across += n) column[i] = *across;
+  }
+}
+
 CODESIGN_BOTH_WIDTHS
 void add_product(const double* a, int n, int m, int stride, const double* x, double* y) {
+  const auto factor = [=](int k) { return x[k]; };
   if (n >= kRows) {
-    add_to_rows(a, 0, n, m, stride, x, y);
+    add_to_rows(a, 0, n, m, stride, factor, y);
   } else {
-    for (int i = 0; i < n; ++i) add_columns<1>(a, &i, m, stride, x, y + i);
+    for (int i = 0; i < n; ++i) add_columns<1>(a, &i, m, stride, factor, y + i);
   }
 }
 

@@ -10,6 +10,9 @@ namespace codesign::dynamics {
 void add_outer_product(double* c, int n, int c_stride, const double* a, int m, int a_stride,
                        double factor);
 
+// Copies the lower triangle of the n×n matrix into the upper.
+void mirror(double* a, int n);
+
 // y += A x; A is n×m.
 void add_product(const double* a, int n, int m, int stride, const double* x, double* y);
 

@@ -1,5 +1,6 @@
 #include "dynamics/joint_space.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -23,18 +24,25 @@ bool JointSpace::reduce(const Eigen::Ref<const Eigen::MatrixXd>& M) {
   base_.compute(M.topLeftCorner<kBaseDofs, kBaseDofs>());
   if (base_.info() != Eigen::Success) return false;
   const Matrix6d L = base_.matrixL();
-  coupling_ = M.bottomLeftCorner(n, kBaseDofs);
+  const auto stride = static_cast<std::size_t>(M.outerStride());
   for (int k = 0; k < kBaseDofs; ++k) {
-    auto column = half_.col(k);
-    column = coupling_.col(k);
-    for (int i = 0; i < k; ++i) column -= L(k, i) * half_.col(i);
-    column *= 1.0 / L(k, k);
+    const double* source = M.data() + static_cast<std::size_t>(k) * stride + kBaseDofs;
+    std::copy_n(source, size, coupling_.col(k).data());
+    double* column = half_.col(k).data();
+    std::copy_n(source, size, column);
+    for (int i = 0; i < k; ++i) {
+      const double* earlier = half_.col(i).data();
+      for (int r = 0; r < size; ++r) column[r] -= L(k, i) * earlier[r];
+    }
+    const double scale = 1.0 / L(k, k);
+    for (int r = 0; r < size; ++r) column[r] *= scale;
   }
-  joint_inertia_ = M.bottomRightCorner(n, n);
-  add_outer_product(joint_inertia_.data(), size, size, half_.data(), kBaseDofs, size, -1.0);
   for (int j = 0; j < size; ++j) {
-    for (int i = 0; i < j; ++i) joint_inertia_(i, j) = joint_inertia_(j, i);
+    const double* source = M.data() + static_cast<std::size_t>(kBaseDofs + j) * stride + kBaseDofs;
+    std::copy_n(source, size, joint_inertia_.col(j).data());
   }
+  add_outer_product(joint_inertia_.data(), size, size, half_.data(), kBaseDofs, size, -1.0);
+  mirror(joint_inertia_.data(), size);
   return std::isfinite(joint_inertia_.sum());
 }
 

@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "dynamics/paired/lanes.hpp"
+
 namespace codesign::dynamics {
 
 using Eigen::Matrix3d;
@@ -137,16 +139,18 @@ void write_bounds(const FlightSettings& settings, const RobotState& state,
   const Eigen::Index jets = thrusts.size();
   for (Eigen::Index i = 0; i < jets; ++i) {
     const Actuator& jet = settings.actuators[static_cast<std::size_t>(i)];
-    qp.lower[i] = -jet.thrust_rate * std::tanh(limits.thrust_slope * (thrusts[i] - jet.thrust_min));
-    qp.upper[i] = jet.thrust_rate * std::tanh(limits.thrust_slope * (jet.thrust_max - thrusts[i]));
+    const Lanes room = lanes(thrusts[i] - jet.thrust_min, jet.thrust_max - thrusts[i]);
+    const Lanes share = hyperbolic_tangent(limits.thrust_slope * room);
+    qp.lower[i] = -jet.thrust_rate * share[0];
+    qp.upper[i] = jet.thrust_rate * share[1];
   }
   for (Eigen::Index j = 0; j < state.joints.size(); ++j) {
     const double scale = limits.joint_range_scale[j];
     const double s = state.joints[j];
-    qp.lower[jets + j] =
-        -limits.joint_speed * std::tanh(limits.joint_slope * (s - scale * limits.joint_lower[j]));
-    qp.upper[jets + j] =
-        limits.joint_speed * std::tanh(limits.joint_slope * (scale * limits.joint_upper[j] - s));
+    const Lanes room = lanes(s - scale * limits.joint_lower[j], scale * limits.joint_upper[j] - s);
+    const Lanes share = hyperbolic_tangent(limits.joint_slope * room);
+    qp.lower[jets + j] = -limits.joint_speed * share[0];
+    qp.upper[jets + j] = limits.joint_speed * share[1];
   }
 }
 

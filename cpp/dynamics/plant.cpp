@@ -102,16 +102,21 @@ bool Plant::by_articulated_bodies(const RobotState& state, const PlantInputs& in
   } else {
     bodies_->move(state.base.R, state.joints, state.velocity);
   }
+  return accelerate(*bodies_, state, inputs);
+}
+
+// bodies: with the plant's masses, at `state`, without pushes.
+bool Plant::accelerate(PairedBodies& bodies, const RobotState& state, const PlantInputs& inputs) {
   thrust_ = inputs.thrust.cwiseProduct(thrust_scale_);
-  push_jets(jets_, thrust_, *bodies_);
-  bodies_->push(0, inputs.base_force, inputs.base_moment);
+  push_jets(jets_, thrust_, bodies);
+  bodies.push(0, inputs.base_force, inputs.base_moment);
   if (!inputs.com_force.isZero(0.0)) {
-    bodies_->push(0, inputs.com_force, bodies_->center_of_mass().cross(inputs.com_force));
+    bodies.push(0, inputs.com_force, bodies.center_of_mass().cross(inputs.com_force));
   }
-  drag_.push(*bodies_);
+  drag_.push(bodies);
   torque_ = inputs.torque;
   add_friction(friction_, state.velocity.tail(torque_.size()), torque_);
-  return bodies_->accelerate(torque_, nu_dot_);
+  return bodies.accelerate(torque_, nu_dot_);
 }
 
 bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs,
@@ -123,13 +128,14 @@ bool Plant::acceleration(const RobotState& state, const PlantInputs& inputs,
   return true;
 }
 
-bool Plant::advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
+bool Plant::advance(RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                     RobotState& state) {
-  if (bodies_ && terms.paired) return advance(inputs, state, &*terms.paired);
-  if (!has_model_masses_) return advance(inputs, state);
-  if (!joint_space.factor()) return false;
+  if (!has_model_masses_) return advance(inputs, state, terms.paired ? &*terms.paired : nullptr);
   for (int i = 0; i < substeps_; ++i) {
-    if (i == 0) {
+    if (i == 0 && terms.paired) {
+      if (!accelerate(*terms.paired, state, inputs)) return false;
+    } else if (i == 0) {
+      if (!joint_space.factor()) return false;
       acceleration(state, terms, joint_space, inputs);
     } else if (!acceleration(state, inputs)) {
       return false;

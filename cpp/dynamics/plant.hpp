@@ -27,10 +27,10 @@ class Plant {
  public:
   Plant(const Model& model, const FlightSettings& settings);
 
-  // terms and joint_space are those of the undisturbed robot at `state`; where bodies share a
-  // joint, the first stage uses them if the plant has the model's masses, else the bodies' motion.
-  // False if the mass matrix is singular or not finite.
-  bool advance(const RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
+  // terms and joint_space are those of the undisturbed robot at `state`. If the plant has the
+  // model's masses, the first stage is made with them, and the bodies of the terms are used up;
+  // else with the motion of these bodies. False if the mass matrix is singular or not finite.
+  bool advance(RobotTerms& terms, JointSpace& joint_space, const PlantInputs& inputs,
                RobotState& state);
 
   // The same without terms. moved: the undisturbed robot moved to `state`, if it is there already.
@@ -43,6 +43,7 @@ class Plant {
                     const PairedBodies* moved = nullptr);
   bool by_articulated_bodies(const RobotState& state, const PlantInputs& inputs,
                              const PairedBodies* moved);
+  bool accelerate(PairedBodies& bodies, const RobotState& state, const PlantInputs& inputs);
   void acceleration(const RobotState& state, const RobotTerms& terms, JointSpace& joint_space,
                     const PlantInputs& inputs);
   bool substep(const PlantInputs& inputs, RobotState& state);

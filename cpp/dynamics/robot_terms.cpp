@@ -142,40 +142,41 @@ void jet_map(const RobotTerms& terms, Eigen::Ref<Matrix6Xd> A) {
 
 void jet_map_rate(const Model& model, const RobotTerms& terms,
                   const Eigen::Ref<const Eigen::VectorXd>& thrusts, Eigen::Ref<Matrix6Xd> Lambda) {
-  // Every jet's arm shortens with the velocity of the center of mass: −Σ Tᵢ S(aᵢ)(−J_c).
-  Vector3d total = Vector3d::Zero();
+  // The base carries the whole robot: its translation changes nothing, its rotation turns A T.
+  Vector3d total = Vector3d::Zero(), moment = Vector3d::Zero();
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
-    total += thrusts[static_cast<Eigen::Index>(i)] * terms.jets[i].axis;
+    const MountedActuator& jet = terms.jets[i];
+    const Vector3d force = thrusts[static_cast<Eigen::Index>(i)] * jet.axis;
+    total += force;
+    moment += jet.arm.cross(force) + jet.reaction * force;
   }
-  const double per_mass = 1.0 / terms.robot.mass;
-  Lambda.topRows<3>().setZero();
-  for (Eigen::Index j = 0; j < Lambda.cols(); ++j) {
-    Lambda.col(j).tail<3>() = total.cross(per_mass * terms.momentum_matrix.col(j).head<3>());
+  Lambda.leftCols<3>().setZero();
+  Lambda.block<3, 3>(0, 3) = -skew(total);
+  Lambda.block<3, 3>(3, 3) = -skew(moment);
+  // Every jet's arm shortens with the velocity of the center of mass: −Σ Tᵢ S(aᵢ)(−J_c).
+  const Vector3d per_mass = (1.0 / terms.robot.mass) * total;
+  for (Eigen::Index j = kBaseDofs; j < Lambda.cols(); ++j) {
+    Lambda.col(j).head<3>().setZero();
+    Lambda.col(j).tail<3>() = per_mass.cross(terms.momentum_matrix.col(j).head<3>());
   }
   for (std::size_t i = 0; i < terms.jets.size(); ++i) {
     const MountedActuator& jet = terms.jets[i];
     const Vector3d force = thrusts[static_cast<Eigen::Index>(i)] * jet.axis;
-    // Per unit of a coordinate: d(force) = ω × force, d(moment) = reaction ω × force, d(arm) =
-    // velocity of the actuator's origin.
-    const auto add = [&](Eigen::Index column, const Vector3d& omega, const Vector3d& velocity) {
-      const Vector3d turn = omega.cross(force);
-      Lambda.col(column).head<3>() += turn;
-      Lambda.col(column).tail<3>() +=
-          jet.arm.cross(turn) + jet.reaction * turn + velocity.cross(force);
-    };
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vector3d unit = Vector3d::Unit(axis);
-      add(axis, Vector3d::Zero(), unit);
-      add(3 + axis, unit, unit.cross(jet.origin));
-    }
+    const Vector3d reaction = jet.reaction * force;
     for (const int b : jet.chain) {
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
       const BodyPose& pose = terms.kin.bodies[static_cast<std::size_t>(b)];
       const Vector3d axis = body.ratio * pose.axis();
+      auto column = Lambda.col(model.column(body));
+      // Per unit of a coordinate: d(force) = ω × force, d(moment) = reaction ω × force, d(arm) =
+      // velocity of the actuator's origin.
       if (body.type == JointType::kRevolute) {
-        add(model.column(body), axis, axis.cross(jet.origin - pose.p));
+        const Vector3d turn = axis.cross(force);
+        column.head<3>() += turn;
+        column.tail<3>() += jet.arm.cross(turn) + axis.cross(reaction) +
+                            axis.cross(jet.origin - pose.p).cross(force);
       } else {
-        add(model.column(body), Vector3d::Zero(), axis);
+        column.tail<3>() += axis.cross(force);
       }
     }
   }

@@ -25,8 +25,9 @@ TorqueController::TorqueController(const FlightSettings& settings)
       used_once_(settings.torque_updates == 1 || !settings.hold_inertia),
       solver_(static_cast<int>(settings.joints.size())) {
   const auto n = static_cast<Eigen::Index>(settings.joints.size());
-  for (Eigen::VectorXd* v : {&error_integral_, &velocity_error_, &right_side_, &solution_, &torque_,
-                             &gradient_, &half_product_, &product_, &residual_, &direction_}) {
+  for (Eigen::VectorXd* v :
+       {&error_integral_, &velocity_error_, &right_side_, &solution_, &torque_, &gradient_,
+        &half_product_, &product_, &residual_, &direction_, &last_solution_, &last_right_side_}) {
     v->setZero(n);
   }
   for (Eigen::MatrixXd* m : {&system_, &inverse_, &hessian_}) m->setZero(n, n);
@@ -50,7 +51,8 @@ bool TorqueController::renew(const JointSpace& joint_space) {
   return cholesky_in_place(system_.data(), n, n);
 }
 
-// solution_ = (I + ε M̂²)⁻¹ right_side_, by conjugate gradients from right_side_.
+// solution_ = (I + ε M̂²)⁻¹ right_side_, by conjugate gradients from the last solution moved by what
+// the right side changed.
 void TorqueController::solve_near_identity(const Eigen::MatrixXd& inertia) {
   const int n = static_cast<int>(inertia.rows());
   const auto add_square = [&](const Eigen::VectorXd& x) {  // product_ = ε M̂² x
@@ -60,9 +62,9 @@ void TorqueController::solve_near_identity(const Eigen::MatrixXd& inertia) {
     product_.setZero();
     add_product(inertia.data(), n, n, n, half_product_.data(), product_.data());
   };
-  solution_ = right_side_;
+  solution_ = last_solution_ + right_side_ - last_right_side_;
   add_square(solution_);
-  residual_ = -product_;
+  residual_ = right_side_ - solution_ - product_;
   direction_ = residual_;
   double square = residual_.squaredNorm();
   const double enough = kSolved * kSolved * right_side_.squaredNorm();
@@ -76,6 +78,8 @@ void TorqueController::solve_near_identity(const Eigen::MatrixXd& inertia) {
     direction_ = residual_ + (next / square) * direction_;
     square = next;
   }
+  last_solution_ = solution_;
+  last_right_side_ = right_side_;
 }
 
 QpStatus TorqueController::update(JointSpace& joint_space,

@@ -39,8 +39,9 @@ class TorqueController {
   bool factored_ = false;
   int iterations_ = 0;
   Eigen::VectorXd error_integral_, velocity_error_, right_side_, solution_, torque_;
-  Eigen::VectorXd half_product_, product_, residual_, direction_;  // of conjugate gradients
-  Eigen::MatrixXd system_;                                         // factored, else
+  // Of conjugate gradients.
+  Eigen::VectorXd half_product_, product_, residual_, direction_, last_solution_, last_right_side_;
+  Eigen::MatrixXd system_;  // factored, else
   // For the bounded problem.
   BoxQpSolver solver_;
   Eigen::MatrixXd inverse_, hessian_;

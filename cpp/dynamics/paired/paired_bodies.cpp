@@ -200,8 +200,8 @@ CODESIGN_BOTH_WIDTHS
 void PairedBodies::start_row(Row& row) {
   const Motion& m = row.motion;
   Articulated& body = row.articulated;
-  const LaneVector arm = combine(m.R, row.com);
-  const LaneSymmetric inertia = rotate(m.R, row.inertia);
+  const LaneVector arm = row.arm = combine(m.R, row.com);
+  const LaneSymmetric inertia = row.world_inertia = rotate(m.R, row.inertia);
   LaneVector acceleration = m.a + cross(m.alpha, arm) + cross(m.w, cross(m.w, arm));
   acceleration.z += lanes(kGravity, kGravity);
   body.force = row.mass * acceleration;
@@ -299,24 +299,34 @@ void PairedBodies::accelerate_base(Eigen::Ref<Eigen::VectorXd> nu_dot) {
 
 CODESIGN_BOTH_WIDTHS
 void PairedBodies::generalized_forces(Eigen::Ref<Eigen::VectorXd> forces) {
+  for (Row& row : rows_) {
+    row.carried_force = row.articulated.force;
+    row.carried_moment = row.articulated.moment;
+  }
   for (std::size_t i = rows_.size() - 1; i > 0; --i) {
     const Row& row = rows_[i];
-    const Articulated& own = row.articulated;
-    const Lanes on_joint = dot(row.motion.R.c, row.turns * own.moment + row.slides * own.force);
-    const LaneVector moment = own.moment + cross(row.offset, own.force);
+    const LaneVector& force = row.carried_force;
+    const Lanes on_joint = dot(row.motion.R.c, row.turns * row.carried_moment + row.slides * force);
+    const LaneVector moment = row.carried_moment + cross(row.offset, force);
+    for (std::size_t l = 0; l < 2; ++l) forces[kBaseDofs + row.joint[l]] = -on_joint[l];
+    if (row.adds_straight) {
+      Row& below = rows_[static_cast<std::size_t>(row.parent[0].row)];
+      below.carried_force = below.carried_force + force;
+      below.carried_moment = below.carried_moment + moment;
+      continue;
+    }
     for (int lane = 0; lane < (row.single ? 1 : 2); ++lane) {
       const auto l = static_cast<std::size_t>(lane);
-      forces[kBaseDofs + row.joint[l]] = -on_joint[lane];
       Row& below = rows_[static_cast<std::size_t>(row.parent[l].row)];
       for (int to = 0; to < 2; ++to) {
         if (!below.single && to != row.parent[l].lane) continue;
-        add_lane(own.force, lane, below.articulated.force, to);
-        add_lane(moment, lane, below.articulated.moment, to);
+        add_lane(force, lane, below.carried_force, to);
+        add_lane(moment, lane, below.carried_moment, to);
       }
     }
   }
-  forces.head<3>() = -of_lane(rows_[0].articulated.force, 0);
-  forces.segment<3>(3) = -of_lane(rows_[0].articulated.moment, 0);
+  forces.head<3>() = -of_lane(rows_[0].carried_force, 0);
+  forces.segment<3>(3) = -of_lane(rows_[0].carried_moment, 0);
 }
 
 CODESIGN_BOTH_WIDTHS

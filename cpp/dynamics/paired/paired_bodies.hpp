@@ -103,7 +103,10 @@ class PairedBodies {
     LaneSymmetric inertia;  // about the center of mass, body axes
     Motion motion;
     LaneVector offset;
+    LaneVector arm;               // to the center of mass, world axes
+    LaneSymmetric world_inertia;  // about the center of mass, world axes
     Articulated articulated;
+    LaneVector carried_force, carried_moment;  // of the subtree
     LaneVector joint_force, joint_moment;
     Lanes per_joint_inertia, force_left;
     Acceleration acceleration;

@@ -36,9 +36,9 @@ CODESIGN_BOTH_WIDTHS
 void PairedBodies::start_composites() {
   for (Row& row : rows_) {
     const Motion& m = row.motion;
-    const LaneVector center = m.p + combine(m.R, row.com);
+    const LaneVector center = m.p + row.arm;
     const LaneVector h = row.mass * center;
-    const LaneSymmetric own = rotate(m.R, row.inertia);
+    const LaneSymmetric& own = row.world_inertia;
     const Lanes xx = h.x * center.x, yy = h.y * center.y, zz = h.z * center.z;
     row.composite = {row.mass,
                      h,

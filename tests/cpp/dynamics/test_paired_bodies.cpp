@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
 #include "dynamics/paired/paired_bodies.hpp"
 #include "sample.hpp"
@@ -123,6 +124,21 @@ TEST(Lanes, SineAndCosineAreThoseOfTheLibrary) {
   Lanes sine, cosine;
   sine_cosine(lanes(1e9, 0.5), sine, cosine);
   EXPECT_EQ(sine[0], std::sin(1e9));
+}
+
+TEST(Lanes, TheHyperbolicTangentIsThatOfTheLibrary) {
+  for (int i = -4000; i <= 4000; ++i) {
+    const double first = 0.00731 * i, second = 1e-6 * i;
+    const Lanes found = hyperbolic_tangent(lanes(first, second));
+    EXPECT_NEAR(found[0], std::tanh(first), 4e-16);
+    EXPECT_NEAR(found[1], std::tanh(second), 4e-16);
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Lanes ends = hyperbolic_tangent(lanes(-kInfinity, 1e300));
+  EXPECT_EQ(ends[0], -1.0);
+  EXPECT_EQ(ends[1], 1.0);
+  EXPECT_EQ(hyperbolic_tangent(lanes(0.0, 0.0))[0], 0.0);
+  EXPECT_TRUE(std::isnan(hyperbolic_tangent(lanes(std::nan(""), 1.0))[0]));
 }
 
 TEST(PairedBodies, AreWhereTheKinematicsHaveThem) {
