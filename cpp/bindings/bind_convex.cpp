@@ -9,7 +9,6 @@
 
 #include "bindings/bindings.hpp"
 #include "dynamics/convex_distance.hpp"
-#include "dynamics/nearest_approach.hpp"
 
 namespace py = pybind11;
 
