@@ -136,7 +136,9 @@ void bind_result(py::module_& m) {
       .def_readwrite("residual_tolerance", &StaticSettings::residual_tolerance)
       .def_readwrite("solver", &StaticSettings::solver)
       .def_readwrite("memory_limit", &StaticSettings::memory_limit,
-                     "bytes for matrices and factors");
+                     "bytes for matrices and factors")
+      .def_readwrite("eigenvalues", &StaticSettings::eigenvalues,
+                     "modes that will be asked for: the automatic choice leaves them room");
   py::class_<StaticResult>(m, "StaticResult", "Displacement, stress and safety factor of a part.")
       .def_readonly("displacement", &StaticResult::displacement, "(n, 3) m")
       .def_readonly("stress", &StaticResult::stress, "(n, 6) Pa: xx yy zz xy yz zx")

@@ -15,6 +15,7 @@ namespace codesign::fem {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr double kBlocks = 16.0;     // of vectors: the basis and its products, with room to grow
 constexpr double kTolerance = 1e-9;  // relative change of an eigenvalue in a round of iteration
 
 // K + shift M, in place.
@@ -40,6 +41,11 @@ NaturalModes read_modes(const NodePattern& pattern, const Eigenpairs& pairs, dou
 }
 
 }  // namespace
+
+double eigen_bytes(const NodePattern& pattern, int count) {
+  const double columns = kBlocks * std::max(count + 2, 4);
+  return matrix_bytes(pattern) + columns * pattern.equations() * sizeof(double);
+}
 
 Eigen::MatrixXd carried_columns(const TetMesh& mesh, const NodePattern& pattern,
                                 const std::vector<RemoteMass>& masses) {
@@ -106,11 +112,12 @@ NaturalModes natural_modes(const TetMesh& mesh, const Material& material,
   }
   check_masses(masses);
   const Eigen::MatrixXd carried = carried_columns(mesh, pattern, masses);
-  if (factor_fits(pattern, memory_limit, kEigenOperations)) {
+  if (factor_fits(pattern, memory_limit - eigen_bytes(pattern, count), kEigenOperations)) {
     const LowerMatrix mass = assemble_mass(mesh, material, pattern);
     LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
     if (shift > 0.0) add_mass(shift, mass, stiffness);
     const CholeskyFactor factor(pattern, stiffness);
+    stiffness = {};
     return modes_of_factor(pattern, mass, carried, factor, shift, count);
   }
   require_memory(matrix_bytes(pattern), memory_limit, static_cast<int>(mesh.nodes.rows()));

@@ -18,6 +18,10 @@ namespace codesign::fem {
 // Multiply-adds of a factorization that takes as long as eigenvalues by iteration.
 inline constexpr double kEigenOperations = 1e11;
 
+// What eigenvalues by a factor hold beside stiffness and factor: a second matrix, and about as many
+// vectors as the block method takes for `count` of them. [bytes]
+double eigen_bytes(const NodePattern& pattern, int count);
+
 // Undamped free vibration, K x = (2 pi f)² M x.
 struct NaturalModes {
   Eigen::VectorXd frequency;  // (k) Hz, ascending; 0 for rigid motions

@@ -42,10 +42,16 @@ void check_settings(const StaticSettings& s) {
   if (!(s.stress_volume > 0)) throw std::invalid_argument("stress_volume must be > 0");
   if (s.copies < 1) throw std::invalid_argument("copies must be >= 1");
   if (s.solutions < 1) throw std::invalid_argument("solutions must be >= 1");
+  if (s.eigenvalues < 0) throw std::invalid_argument("eigenvalues must be >= 0");
   if (!(s.residual_tolerance > 0)) throw std::invalid_argument("residual_tolerance must be > 0");
 }
 
 bool solves_directly(const NodePattern& pattern, const StaticSettings& settings) {
+  const bool chooses = settings.solver == LinearSolver::automatic;
+  if (chooses && settings.eigenvalues > 0 &&
+      matrix_bytes(pattern) + factor_bytes(pattern) + eigen_bytes(pattern, settings.eigenvalues) >
+          settings.memory_limit)
+    return false;
   if (settings.solver != LinearSolver::automatic) return settings.solver == LinearSolver::direct;
   return factor_fits(pattern, settings.memory_limit, settings.solutions * kDirectOperations);
 }
@@ -63,6 +69,11 @@ struct StaticSystem::Data {
   bool refactors() const {
     return !factor && part->settings.solver == LinearSolver::automatic &&
            factor_fits(pattern, part->settings.memory_limit, kEigenOperations);
+  }
+
+  // Of the memory limit, beside what the solution by iteration holds. [bytes]
+  double memory_left() const {
+    return part->settings.memory_limit - matrix_bytes(pattern) - preconditioner->bytes();
   }
 
   Eigen::VectorXd gather(const Eigen::VectorXd& nodal) const {
@@ -220,7 +231,7 @@ NaturalModes StaticSystem::natural_modes(int count) const {
   const HeldPart& part = *d.part;
   if (d.refactors()) {
     return codesign::fem::natural_modes(part.mesh, part.material, part.supports, count,
-                                        part.settings.memory_limit, part.masses);
+                                        d.memory_left(), part.masses);
   }
   if (!(part.material.density > 0)) throw std::invalid_argument("modes need a density above 0");
   const Eigen::MatrixXd carried = carried_columns(part.mesh, d.pattern, part.masses);
@@ -248,7 +259,7 @@ BucklingModes StaticSystem::buckling_modes(const Points& displacement, int count
   const Data& d = *data_;
   if (d.refactors()) {
     return codesign::fem::buckling_modes(d.part->mesh, d.part->material, d.part->supports,
-                                         displacement, count, d.part->settings.memory_limit);
+                                         displacement, count, d.memory_left());
   }
   if (!d.factor) {
     return buckling_by_iteration(d.part->mesh, d.part->material, d.pattern, d.stiffness,

@@ -38,6 +38,7 @@ struct StaticSettings {
   LinearSolver solver = LinearSolver::automatic;
   double memory_limit = kMemoryLimit;  // bytes for matrices and factors
   int solutions = 1;                   // load cases that will be solved, for the automatic choice
+  int eigenvalues = 0;                 // as many will be asked for: the choice leaves them room
 };
 
 // A part with its supports and loads.

@@ -71,6 +71,8 @@ TwoLevelPreconditioner::TwoLevelPreconditioner(const TetMesh& mesh, const Materi
   }
 }
 
+double TwoLevelPreconditioner::bytes() const { return factor_bytes(coarse_pattern_); }
+
 Eigen::VectorXd TwoLevelPreconditioner::apply(const Eigen::VectorXd& residual) const {
   Eigen::VectorXd x = residual;
   solve_lower(stiffness_, x);

@@ -24,6 +24,8 @@ class TwoLevelPreconditioner {
 
   Eigen::VectorXd apply(const Eigen::VectorXd& residual) const;
 
+  double bytes() const;  // of its factor
+
  private:
   // A free equation follows the mean of up to two coarse equations; the same one twice at a corner.
   struct Parents {

@@ -705,6 +705,13 @@ class StaticSettings:
     @copies.setter
     def copies(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     @property
+    def eigenvalues(self) -> int:
+        """
+        modes that will be asked for: the automatic choice leaves them room
+        """
+    @eigenvalues.setter
+    def eigenvalues(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
     def exclusion_distance(self) -> float | None:
         """
         m, everywhere; None: that of the rule

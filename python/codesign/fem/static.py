@@ -82,6 +82,7 @@ class StaticSystem:
         solver: "direct" factorizes, "iterative" (conjugate gradients, two-level preconditioner) needs less memory;
             "automatic" takes the factor if it fits into memory_limit and is the faster way for one load case.
         memory_limit: [bytes] for matrices and factors, of modes and buckling too; decides between the solvers.
+        eigenvalues: natural or buckling modes that will be asked for: "automatic" leaves them room within memory_limit.
         masses: rigid bodies that faces of the part carry.
 
     Raises:
@@ -107,6 +108,7 @@ class StaticSystem:
         solver: Solver = "automatic",
         memory_limit: float = MEMORY_LIMIT,
         masses: Sequence[RemoteMass] = (),
+        eigenvalues: int = 0,
     ) -> None:
         if solver not in get_args(Solver):
             raise ValueError(f"solver = {solver!r}: must be one of {', '.join(get_args(Solver))}")
@@ -120,6 +122,7 @@ class StaticSystem:
         settings.residual_tolerance = residual_tolerance
         settings.solver = getattr(_core.LinearSolver, solver)
         settings.memory_limit = memory_limit
+        settings.eigenvalues = eigenvalues
         self.mesh = mesh
         self._system = _core.StaticSystem(
             mesh, material, native_supports(mesh, supports), settings, [mass.native(mesh) for mass in masses]
@@ -207,4 +210,5 @@ def buckling_factors(
 
     Raises: ValueError: count < 1; MeshError; SolverError: the part is not held, or the eigenvalues do not converge.
     """
-    return StaticSystem(mesh, material, supports, memory_limit=memory_limit).buckling_factors(loads, count)
+    system = StaticSystem(mesh, material, supports, memory_limit=memory_limit, eigenvalues=count)
+    return system.buckling_factors(loads, count)

@@ -360,6 +360,7 @@ def native_case(
     static.exclusion_distance = settings.exclusion_distance
     static.copies = copies
     static.memory_limit = settings.memory_limit
+    static.eigenvalues = max(settings.modes, settings.buckling)
     case = _core.PartCase(
         surface=surface,
         size=size,
