@@ -130,9 +130,11 @@ inline void sine_cosine(const Lanes& angle, Lanes& sine, Lanes& cosine) {
     cosine = lanes(std::cos(angle[0]), std::cos(angle[1]));
     return;
   }
+  using Bits = long long __attribute__((vector_size(16)));
   constexpr double kRound = 0x1.8p52;
   constexpr double kHigh = 1.57079632673412561417, kLow = 6.07710050650619224932e-11;  // of π/2
-  const Lanes turns = (angle * 0.63661977236758134308 + kRound) - kRound;  // quarter turns
+  const Lanes shifted = angle * 0.63661977236758134308 + kRound;  // quarter turns in its last bits
+  const Lanes turns = shifted - kRound;
   const Lanes x = (angle - turns * kHigh) - turns * kLow;
   const Lanes z = x * x;
   Lanes s = 1.58969099521155010221e-10 * z - 2.50507602534068634195e-08;
@@ -143,13 +145,17 @@ inline void sine_cosine(const Lanes& angle, Lanes& sine, Lanes& cosine) {
   c = (c * z - 2.75573143513906633035e-07) * z + 2.48015872894767294178e-05;
   c = (c * z - 1.38888888888741095749e-03) * z + 4.16666666666666019037e-02;
   c = 1.0 - (0.5 * z - z * (z * c));
-  for (int lane = 0; lane < 2; ++lane) {
-    const int quarter = static_cast<int>(turns[lane]) & 3;
-    const bool odd = (quarter & 1) != 0;
-    const double along = odd ? c[lane] : s[lane], across = odd ? s[lane] : c[lane];
-    sine[lane] = (quarter & 2) != 0 ? -along : along;
-    cosine[lane] = quarter == 1 || quarter == 2 ? -across : across;
-  }
+  Bits quarter, of_sine, of_cosine;
+  std::memcpy(&quarter, &shifted, sizeof(quarter));
+  std::memcpy(&of_sine, &s, sizeof(of_sine));
+  std::memcpy(&of_cosine, &c, sizeof(of_cosine));
+  const Bits odd = -(quarter & 1);  // all bits, or none: then sine and cosine change places
+  const Bits along = (of_cosine & odd) | (of_sine & ~odd);
+  const Bits across = (of_sine & odd) | (of_cosine & ~odd);
+  const Bits sine_bits = along ^ ((quarter & 2) << 62);  // signs
+  const Bits cosine_bits = across ^ (((quarter + 1) & 2) << 62);
+  std::memcpy(&sine, &sine_bits, sizeof(sine));
+  std::memcpy(&cosine, &cosine_bits, sizeof(cosine));
 }
 
 }  // namespace codesign::dynamics

@@ -165,7 +165,9 @@ CODESIGN_BOTH_WIDTHS
 void PairedBodies::move_row(Row& row, const double* joints, const double* rates) {
   const Motion& first = rows_[static_cast<std::size_t>(row.parent[0].row)].motion;
   const Motion& second = rows_[static_cast<std::size_t>(row.parent[1].row)].motion;
-  const Motion parent = row.reads_straight ? first : of_parents(row, first, second);
+  Motion mixed;
+  if (!row.reads_straight) mixed = of_parents(row, first, second);
+  const Motion& parent = row.reads_straight ? first : mixed;
   Motion& m = row.motion;
   const LaneVector x = combine(parent.R, row.parent_R_body.a);
   const LaneVector y = combine(parent.R, row.parent_R_body.b);
@@ -298,38 +300,6 @@ void PairedBodies::accelerate_base(Eigen::Ref<Eigen::VectorXd> nu_dot) {
 }
 
 CODESIGN_BOTH_WIDTHS
-void PairedBodies::generalized_forces(Eigen::Ref<Eigen::VectorXd> forces) {
-  for (Row& row : rows_) {
-    row.carried_force = row.articulated.force;
-    row.carried_moment = row.articulated.moment;
-  }
-  for (std::size_t i = rows_.size() - 1; i > 0; --i) {
-    const Row& row = rows_[i];
-    const LaneVector& force = row.carried_force;
-    const Lanes on_joint = dot(row.motion.R.c, row.turns * row.carried_moment + row.slides * force);
-    const LaneVector moment = row.carried_moment + cross(row.offset, force);
-    for (std::size_t l = 0; l < 2; ++l) forces[kBaseDofs + row.joint[l]] = -on_joint[l];
-    if (row.adds_straight) {
-      Row& below = rows_[static_cast<std::size_t>(row.parent[0].row)];
-      below.carried_force = below.carried_force + force;
-      below.carried_moment = below.carried_moment + moment;
-      continue;
-    }
-    for (int lane = 0; lane < (row.single ? 1 : 2); ++lane) {
-      const auto l = static_cast<std::size_t>(lane);
-      Row& below = rows_[static_cast<std::size_t>(row.parent[l].row)];
-      for (int to = 0; to < 2; ++to) {
-        if (!below.single && to != row.parent[l].lane) continue;
-        add_lane(force, lane, below.carried_force, to);
-        add_lane(moment, lane, below.carried_moment, to);
-      }
-    }
-  }
-  forces.head<3>() = -of_lane(rows_[0].carried_force, 0);
-  forces.segment<3>(3) = -of_lane(rows_[0].carried_moment, 0);
-}
-
-CODESIGN_BOTH_WIDTHS
 bool PairedBodies::accelerate(const Eigen::Ref<const Eigen::VectorXd>& tau,
                               Eigen::Ref<Eigen::VectorXd> nu_dot) {
   for (std::size_t i = rows_.size() - 1; i > 0; --i) hand_down(rows_[i], tau.data());
@@ -338,7 +308,9 @@ bool PairedBodies::accelerate(const Eigen::Ref<const Eigen::VectorXd>& tau,
     Row& row = rows_[i];
     const Acceleration& first = rows_[static_cast<std::size_t>(row.parent[0].row)].acceleration;
     const Acceleration& second = rows_[static_cast<std::size_t>(row.parent[1].row)].acceleration;
-    const Acceleration parent = row.reads_straight ? first : of_parents(row, first, second);
+    Acceleration mixed;
+    if (!row.reads_straight) mixed = of_parents(row, first, second);
+    const Acceleration& parent = row.reads_straight ? first : mixed;
     Acceleration& own = row.acceleration;
     own.linear = parent.linear + cross(parent.angular, row.offset);
     const Lanes joint = row.per_joint_inertia * (row.force_left - dot(row.joint_force, own.linear) -

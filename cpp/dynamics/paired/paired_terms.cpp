@@ -4,9 +4,9 @@
 #include "dynamics/paired/lane_access.hpp"
 #include "dynamics/paired/paired_bodies.hpp"
 
-// Mass matrix and momentum matrix by composite rigid bodies, everything about the base's origin:
-// inertias of subtrees are plain sums there, and a joint's momentum needs no moving along its
-// ancestors.
+// Terms of the equations of motion. Mass matrix and momentum matrix by composite rigid bodies,
+// about the base's origin: inertias of subtrees are plain sums there, and a joint's momentum needs
+// no moving along its ancestors.
 namespace codesign::dynamics {
 
 using Eigen::Matrix3d;
@@ -133,6 +133,38 @@ void PairedBodies::write_mass_matrix(Eigen::MatrixXd& M, Matrix6Xd& C, RigidIner
   C.block<3, 3>(0, 3) = skew(-first);
   C.block<3, 3>(3, 3) = robot.inertia;
   for (std::size_t i = 1; i < rows_.size(); ++i) write_column(rows_[i], robot.com, M, C);
+}
+
+CODESIGN_BOTH_WIDTHS
+void PairedBodies::generalized_forces(Eigen::Ref<Eigen::VectorXd> forces) {
+  for (Row& row : rows_) {
+    row.carried_force = row.articulated.force;
+    row.carried_moment = row.articulated.moment;
+  }
+  for (std::size_t i = rows_.size() - 1; i > 0; --i) {
+    const Row& row = rows_[i];
+    const LaneVector& force = row.carried_force;
+    const Lanes on_joint = dot(row.motion.R.c, row.turns * row.carried_moment + row.slides * force);
+    const LaneVector moment = row.carried_moment + cross(row.offset, force);
+    for (std::size_t l = 0; l < 2; ++l) forces[kBaseDofs + row.joint[l]] = -on_joint[l];
+    if (row.adds_straight) {
+      Row& below = rows_[static_cast<std::size_t>(row.parent[0].row)];
+      below.carried_force = below.carried_force + force;
+      below.carried_moment = below.carried_moment + moment;
+      continue;
+    }
+    for (int lane = 0; lane < (row.single ? 1 : 2); ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      Row& below = rows_[static_cast<std::size_t>(row.parent[l].row)];
+      for (int to = 0; to < 2; ++to) {
+        if (!below.single && to != row.parent[l].lane) continue;
+        add_lane(force, lane, below.carried_force, to);
+        add_lane(moment, lane, below.carried_moment, to);
+      }
+    }
+  }
+  forces.head<3>() = -of_lane(rows_[0].carried_force, 0);
+  forces.segment<3>(3) = -of_lane(rows_[0].carried_moment, 0);
 }
 
 void PairedBodies::write_poses(std::vector<BodyPose>& poses) const {
