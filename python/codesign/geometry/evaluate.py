@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from weakref import WeakValueDictionary
 
 import manifold3d
 import numpy as np
@@ -19,18 +20,20 @@ from codesign.geometry.shape import Difference, Intersection, Moved, Shape, Unio
 from codesign.geometry.tessellate import tessellate
 
 KEPT = 128  # manifolds: four meshes of a few tools for each of several parts, about 0.1 MB each
+REPEATED = 32  # primitives: a shape's pattern repeats the same one
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Primitive:
-    """What triangles come from. number: manifold3d's `original_id`; one that was made anew has another.
-
-    face_names: of its faces, which count from 0.
-    """
+    """What triangles come from. number: manifold3d's `original_id`. face_names: of its faces, which count from 0."""
 
     number: int
     shape: Shape
     face_names: tuple[str, ...]
+
+
+# One primitive made anew keeps its number as long as a kept manifold has it: triangles are ordered by it.
+_primitives: WeakValueDictionary[tuple[Shape, Resolution], Primitive] = WeakValueDictionary()
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,23 +109,26 @@ def _kept(shape: Shape, resolution: Resolution) -> Piece:
     return _inner(shape, resolution).now()
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=REPEATED)
 def _primitive(shape: Shape, resolution: Resolution) -> Piece:
     mesh = tessellate(shape, resolution)
-    number = manifold3d.Manifold.reserve_ids(1)
+    primitive = _primitives.get((shape, resolution))
+    if primitive is None:
+        primitive = Primitive(manifold3d.Manifold.reserve_ids(1), shape, mesh.face_names)
+        _primitives[shape, resolution] = primitive
     tool = manifold3d.Manifold(
         manifold3d.Mesh64(
             vert_properties=mesh.points,
             tri_verts=mesh.triangles,
             run_index=np.array([0, mesh.triangles.size], dtype=np.uint64),
-            run_original_id=np.array([number], dtype=np.uint32),
+            run_original_id=np.array([primitive.number], dtype=np.uint32),
             face_id=mesh.face,
         )
     )
     if tool.status() != manifold3d.Error.NoError or tool.volume() <= 0.0:
         reason = f"{tool.status().name}, volume {tool.volume():g} mm³"
         raise GeometryError(f"{type(shape).__name__} is not a solid: {reason}")
-    return Piece(tool, (Primitive(number, shape, mesh.face_names),))
+    return Piece(tool, (primitive,))
 
 
 def _is_tilted(shape: Shape) -> bool:

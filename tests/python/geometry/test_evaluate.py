@@ -54,6 +54,17 @@ def test_a_primitive_made_anew_keeps_its_faces():
     assert_same(build_solid(shape, RESOLUTION), known)
 
 
+def test_a_primitive_made_anew_keeps_its_number_beside_kept_tools():
+    bolted = [part.fem_shape(support="bolted", half=False) for part in DESIGNS["bracket"]]  # its pad is tool and body
+    forget()
+    alone = build_solid(bolted[1], RESOLUTION)
+    forget()
+    build_solid(bolted[0], RESOLUTION)
+    evaluate._primitive.cache_clear()
+    evaluate._primitive(bolted[0].base.shapes[1], RESOLUTION)
+    assert_same(build_solid(bolted[1], RESOLUTION), alone)
+
+
 def test_tools_are_kept_from_one_design_to_the_next():
     forget()
     for part in DESIGNS["bracket"]:
