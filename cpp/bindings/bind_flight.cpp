@@ -140,8 +140,9 @@ void bind_histories(py::class_<FlightLog>& log) {
   bind_history<&L::wind>(log, "wind", Shape::kRows, "(N, 3) force on the base's origin [N]");
   bind_history<&L::clearance>(log, "clearance", Shape::kSeries,
                               "(N,) lowest contact point above the ground [m]");
-  bind_history<&L::qp_iterations>(log, "qp_iterations", Shape::kRows,
-                                  "(N, 2) factorizations of the momentum and the torque QP");
+  bind_history<&L::qp_iterations>(
+      log, "qp_iterations", Shape::kRows,
+      "(N, 2) linear systems solved for the momentum and the torque QP");
   bind_history<&L::active_bounds>(log, "active_bounds", Shape::kSeries, "(N,) of the momentum QP");
 }
 
@@ -251,7 +252,7 @@ void bind_log(py::module_& m) {
       .def_readonly("fuel_burnt", &FlightLog::fuel_burnt, "[kg]")
       .def_readonly("qp_failures", &FlightLog::qp_failures, "steps in which a QP was not solved")
       .def_readonly("total_qp_iterations", &FlightLog::total_qp_iterations,
-                    "factorizations of both QPs")
+                    "linear systems solved for both QPs")
       .def_readonly("profile", &FlightLog::profile, "FlightProfile")
       .def_readonly("rms", &FlightLog::rms, "FlightObjectives: root mean squares, SI")
       .def_readonly("script", &FlightLog::script,

@@ -83,7 +83,7 @@ struct FlightLog {
   History torque;                      // (N, joints)
   History wind;                        // (N, 3) force on the base's origin
   History clearance;                   // (N, 1) lowest contact point above the ground
-  IntHistory qp_iterations;            // (N, 2) factorizations of the momentum and the torque QP
+  IntHistory qp_iterations;            // (N, 2) linear systems of the momentum and the torque QP
   IntHistory active_bounds;            // (N, 1) of the momentum QP
 
   // Summary over the logged samples.

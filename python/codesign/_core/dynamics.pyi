@@ -2519,7 +2519,7 @@ class FlightLog:
     @property
     def qp_iterations(self) -> numpy.ndarray:
         """
-        (N, 2) factorizations of the momentum and the torque QP
+        (N, 2) linear systems solved for the momentum and the torque QP
         """
     @property
     def rms(self) -> FlightObjectives:
@@ -2589,7 +2589,7 @@ class FlightLog:
     @property
     def total_qp_iterations(self) -> int:
         """
-        factorizations of both QPs
+        linear systems solved for both QPs
         """
     @property
     def unmodeled_force(self) -> numpy.ndarray:
