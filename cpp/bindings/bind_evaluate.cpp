@@ -5,6 +5,7 @@
 
 #include "bindings/bindings.hpp"
 #include "bindings/evaluate.hpp"
+#include "fem/kept_meshes.hpp"
 #include "fem/la/linked_libraries.hpp"
 
 namespace py = pybind11;
@@ -44,6 +45,23 @@ void bind_evaluate(py::module_& m) {
       .def(py::init<std::string, std::vector<std::vector<fem::Load>>>(), "name"_a, "units"_a)
       .def_readonly("name", &fem::VaryingCase::name)
       .def_readonly("units", &fem::VaryingCase::units);
+  py::class_<fem::Stretch>(
+      m, "Stretch",
+      "Makes a body longer or shorter along a unit direction: what lies at most `start` behind the "
+      "origin [m] stays, what lies at least `end` behind it moves by `change` [m]. Raises: "
+      "ValueError (no unit direction, an empty zone, more than two thirds of it lost).")
+      .def(py::init([](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                       double start, double end, double change) {
+             const fem::Stretch stretch{origin, direction, start, end, change};
+             fem::check_stretch(stretch);
+             return stretch;
+           }),
+           "origin"_a, "direction"_a, "start"_a, "end"_a, "change"_a)
+      .def_readonly("origin", &fem::Stretch::origin, "(3,) m")
+      .def_readonly("direction", &fem::Stretch::direction, "(3,) unit vector")
+      .def_readonly("start", &fem::Stretch::from, "m along the direction")
+      .def_readonly("end", &fem::Stretch::to, "m along the direction")
+      .def_readonly("change", &fem::Stretch::change, "m, of the zone's length");
   py::class_<fem::PartCase>(m, "PartCase",
                             "One part and its load cases; supports and loads name surface faces.")
       .def(py::init(&make_case), py::kw_only(), "surface"_a, "size"_a, "material"_a, "supports"_a,
@@ -53,6 +71,9 @@ void bind_evaluate(py::module_& m) {
            "max_refinements"_a = 0)
       .def_readonly("surface", &fem::PartCase::surface)
       .def_readwrite("size", &fem::PartCase::size)
+      .def_readwrite("stretch", &fem::PartCase::stretch,
+                     "Stretch, or None: the part is the surface's body stretched; parts that "
+                     "differ by it alone share a mesh and most of its factor")
       .def_readonly("material", &fem::PartCase::material)
       .def_readonly("supports", &fem::PartCase::supports)
       .def_readonly("cases", &fem::PartCase::cases)
@@ -87,6 +108,11 @@ void bind_evaluate(py::module_& m) {
                     "why refining ended without convergence; empty otherwise")
       .def_readonly("mesh_seconds", &fem::PartAnalysis::mesh_seconds)
       .def_readonly("solve_seconds", &fem::PartAnalysis::solve_seconds);
+  m.def(
+      "limit_kept_meshes", &fem::limit_kept_meshes, "bytes"_a,
+      "What this process may keep of the meshes and factors of stretched parts, 256 MB at first.");
+  m.def("forget_meshes", &fem::forget_meshes,
+        "Frees what is kept of stretched parts; whether there was anything.");
   m.def("analyze_part", &fem::analyze_part, "part"_a, py::call_guard<py::gil_scoped_release>(),
         "Surface to safety factor. Raises MeshError, SolverError.");
 

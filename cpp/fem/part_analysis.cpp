@@ -4,12 +4,14 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "errors.hpp"
+#include "fem/kept_meshes.hpp"
 #include "fem/meshing/mesh_watch.hpp"
 #include "model_error.hpp"
 
@@ -135,13 +137,24 @@ int solutions(const PartCase& part) {
   return static_cast<int>(count);
 }
 
-// The factor of the symmetric motions gives way to that of the antisymmetric ones.
-void solve(const PartCase& part, PartAnalysis& analysis) {
+StaticSystem make_system(const PartCase& part, const std::shared_ptr<const TetMesh>& kept,
+                         const TetMesh& mesh) {
+  StaticSettings settings = part.settings;
+  settings.solutions = solutions(part);
+  std::optional<KeptElements> elements;
+  if (kept)
+    elements = kept_elements(kept, *part.stretch, part.material, constrain(*kept, part.supports),
+                             factor_limits(settings));
+  return {mesh, part.material, part.supports, settings, part.masses, std::move(elements)};
+}
+
+// The factor of the symmetric motions gives way to that of the antisymmetric ones. kept: the mesh
+// before it was stretched, if it was.
+void solve(const PartCase& part, const std::shared_ptr<const TetMesh>& kept,
+           PartAnalysis& analysis) {
   CaseFactors factors;
   {
-    StaticSettings settings = part.settings;
-    settings.solutions = solutions(part);
-    const StaticSystem system(analysis.mesh, part.material, part.supports, settings, part.masses);
+    const StaticSystem system = make_system(part, kept, analysis.mesh);
     solve_cases(part, system, analysis);
     for (const VaryingCase& varying : part.varying) {
       analysis.responses.push_back(system.unit_responses(varying.units));
@@ -160,12 +173,18 @@ void solve(const PartCase& part, PartAnalysis& analysis) {
 }
 
 // One mesh and its solution; times are added to those of the passes before.
-void run_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) try {
+void try_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) {
   const Clock::time_point start = Clock::now();
   const double before = thread_seconds();
   const MeshOptions options = pass_options(part, mesher_seconds);
+  std::shared_ptr<const TetMesh> kept;
   try {
-    analysis.mesh = tetrahedralize(part.surface, analysis.size, options);
+    if (part.stretch) {
+      kept = kept_mesh(part.surface, analysis.size, options);
+      analysis.mesh = stretched(*kept, *part.stretch);
+    } else {
+      analysis.mesh = tetrahedralize(part.surface, analysis.size, options);
+    }
   } catch (const MeshLimitError& error) {
     if (options.max_vertices == part.mesh_options.max_vertices) throw;
     throw MeshLimitError(std::string(error.what()) +
@@ -175,10 +194,19 @@ void run_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analys
   mesher_seconds += thread_seconds() - before;
   analysis.mesh_seconds += seconds_since(start);
   const Clock::time_point meshed = Clock::now();
-  solve(part, analysis);
+  solve(part, kept, analysis);
   analysis.solve_seconds += seconds_since(meshed);
-} catch (const std::bad_alloc&) {
-  out_of_memory(analysis);
+}
+
+// Where memory runs out, what other parts have left goes first.
+void run_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) {
+  for (;;) try {
+      return try_pass(part, mesher_seconds, analysis);
+    } catch (const std::bad_alloc&) {
+      if (!forget_meshes()) out_of_memory(analysis);
+    } catch (const MemoryLimitError&) {
+      if (!forget_meshes()) throw;
+    }
 }
 
 }  // namespace
@@ -203,6 +231,8 @@ PartAnalysis analyze_part(const PartCase& part) {
     throw std::invalid_argument(
         "masses: a half model takes no remote masses, analyze the whole part");
   }
+  if (part.stretch && part.max_refinements > 0)
+    throw std::invalid_argument("stretch: a refined mesh is made of the part's own surface");
   PartAnalysis analysis;
   analysis.size = part.size;
   double mesher_seconds = 0.0;  // of the processor, all passes

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "fem/elasticity/unit_responses.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 #include "fem/meshing/size_field.hpp"
+#include "fem/meshing/stretch.hpp"
 #include "fem/meshing/tet_mesher.hpp"
 #include "fem/surface/surface_mesh.hpp"
 
@@ -28,10 +30,12 @@ struct VaryingCase {
 };
 
 // One part and its load cases, ready to be meshed and solved; supports and loads name faces of the
-// surface.
+// surface. stretch: the part is the surface's body stretched; its mesh is that of the surface, and
+// parts that differ by their stretch alone share it and most of its factor (kept_meshes.hpp).
 struct PartCase {
   SurfaceMesh surface;
   SizeField size;
+  std::optional<Stretch> stretch = std::nullopt;
   MeshOptions mesh_options;
   Material material;
   std::vector<Support> supports;

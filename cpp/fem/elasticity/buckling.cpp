@@ -174,7 +174,7 @@ BucklingModes buckling_modes(const TetMesh& mesh, const Material& material,
   const Constraints constraints = constrain(mesh, supports);
   require_held(mesh, constraints);
   const NodePattern pattern = order_nodes(mesh, constraints);
-  if (factor_fits(pattern, memory_limit - eigen_bytes(pattern, count), kEigenOperations)) {
+  if (factor_fits(pattern, {memory_limit - eigen_bytes(pattern, count), kEigenOperations})) {
     const CholeskyFactor factor(pattern, assemble_stiffness(mesh, material, pattern));
     return buckling_of_factor(mesh, material, pattern, factor, displacement, count);
   }

@@ -18,10 +18,10 @@ double factor_bytes(const NodePattern& pattern) {
   return sizeof(double) * pattern.supernodes.entries;
 }
 
-bool factor_fits(const NodePattern& pattern, double memory_limit, double operations) {
-  return matrix_bytes(pattern) + factor_bytes(pattern) <= memory_limit &&
+bool factor_fits(const NodePattern& pattern, const FactorLimits& limits) {
+  return matrix_bytes(pattern) + factor_bytes(pattern) <= limits.memory &&
          pattern.supernodes.entries < std::numeric_limits<int>::max() &&
-         pattern.supernodes.operations <= operations;
+         pattern.supernodes.operations <= limits.operations;
 }
 
 void require_memory(double bytes, double memory_limit, int nodes) {

@@ -11,9 +11,13 @@ inline constexpr double kMemoryLimit = 4e9;  // bytes, for the matrices and fact
 double matrix_bytes(const NodePattern& pattern);  // of the stiffness
 double factor_bytes(const NodePattern& pattern);  // of its Cholesky factor
 
-// Whether stiffness and factor fit into the limit and the factorization takes no more multiply-adds
-// than `operations`.
-bool factor_fits(const NodePattern& pattern, double memory_limit, double operations);
+// What a factorization may take.
+struct FactorLimits {
+  double memory = kMemoryLimit;  // bytes, of stiffness and factor
+  double operations = 0.0;       // multiply-adds
+};
+
+bool factor_fits(const NodePattern& pattern, const FactorLimits& limits);
 
 // Throws MemoryLimitError if an analysis of `nodes` nodes needs more bytes than the limit.
 void require_memory(double bytes, double memory_limit, int nodes);

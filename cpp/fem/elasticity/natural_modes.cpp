@@ -112,7 +112,7 @@ NaturalModes natural_modes(const TetMesh& mesh, const Material& material,
   }
   check_masses(masses);
   const Eigen::MatrixXd carried = carried_columns(mesh, pattern, masses);
-  if (factor_fits(pattern, memory_limit - eigen_bytes(pattern, count), kEigenOperations)) {
+  if (factor_fits(pattern, {memory_limit - eigen_bytes(pattern, count), kEigenOperations})) {
     const LowerMatrix mass = assemble_mass(mesh, material, pattern);
     LowerMatrix stiffness = assemble_stiffness(mesh, material, pattern);
     if (shift > 0.0) add_mass(shift, mass, stiffness);

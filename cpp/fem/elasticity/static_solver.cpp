@@ -46,6 +46,10 @@ void check_settings(const StaticSettings& s) {
   if (!(s.residual_tolerance > 0)) throw std::invalid_argument("residual_tolerance must be > 0");
 }
 
+int free_components(const Constraints& constraints) {
+  return static_cast<int>(std::count(constraints.fixed.begin(), constraints.fixed.end(), char{0}));
+}
+
 bool solves_directly(const NodePattern& pattern, const StaticSettings& settings) {
   const bool chooses = settings.solver == LinearSolver::automatic;
   if (chooses && settings.eigenvalues > 0 &&
@@ -53,13 +57,19 @@ bool solves_directly(const NodePattern& pattern, const StaticSettings& settings)
           settings.memory_limit)
     return false;
   if (settings.solver != LinearSolver::automatic) return settings.solver == LinearSolver::direct;
-  return factor_fits(pattern, settings.memory_limit, settings.solutions * kDirectOperations);
+  return factor_fits(pattern, factor_limits(settings));
 }
 
 }  // namespace
 
+FactorLimits factor_limits(const StaticSettings& settings) {
+  return {settings.memory_limit, settings.solutions * kDirectOperations};
+}
+
 struct StaticSystem::Data {
   std::shared_ptr<const HeldPart> part;
+  int equations = 0;
+  std::unique_ptr<CondensedFactor> condensed;  // or, if no element is kept:
   NodePattern pattern;
   std::unique_ptr<CholeskyFactor> factor;  // or, if it would be too large:
   LowerMatrix stiffness;
@@ -67,8 +77,9 @@ struct StaticSystem::Data {
 
   // Whether eigenvalues are worth a factor although one load case was not.
   bool refactors() const {
+    if (condensed) return true;
     return !factor && part->settings.solver == LinearSolver::automatic &&
-           factor_fits(pattern, part->settings.memory_limit, kEigenOperations);
+           factor_fits(pattern, {part->settings.memory_limit, kEigenOperations});
   }
 
   // Of the memory limit, beside what the solution by iteration holds. [bytes]
@@ -84,12 +95,6 @@ struct StaticSystem::Data {
     return result;
   }
 
-  void add_free(const Eigen::VectorXd& free, Eigen::VectorXd& nodal) const {
-    for (std::size_t d = 0; d < pattern.equation.size(); ++d) {
-      if (pattern.equation[d] >= 0) nodal[static_cast<int>(d)] += free[pattern.equation[d]];
-    }
-  }
-
   Eigen::VectorXd solve_free(const Eigen::VectorXd& force, int& iterations) const {
     if (factor) return factor->solve(force);
     ConjugateGradientResult result =
@@ -98,21 +103,34 @@ struct StaticSystem::Data {
     return std::move(result.solution);
   }
 
+  // Of nodal components (3 n), zero where held.
+  Eigen::VectorXd solve_nodal(const Eigen::VectorXd& force, int& iterations) const {
+    if (condensed) return condensed->solve(force);
+    return nodal_columns(pattern, solve_free(gather(force), iterations));
+  }
+
+  // What of a nodal vector (3 n) free components feel.
+  Eigen::VectorXd felt(const Eigen::VectorXd& nodal) const {
+    Eigen::VectorXd free = nodal;
+    for (std::size_t d = 0; d < part->constraints.fixed.size(); ++d)
+      if (part->constraints.fixed[d]) free[static_cast<int>(d)] = 0.0;
+    return free;
+  }
+
   // Displacement with iterative refinement; internal is left as its internal forces.
   Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal, double& residual,
                            int& iterations) const {
     Eigen::VectorXd u = part->constraints.displacement;
     internal = u.isZero(0.0) ? u : internal_forces(part->mesh, part->material, u).sum;
     residual = 0.0;
-    if (pattern.equations() == 0) return u;
+    if (equations == 0) return u;
     if (load.isZero(0.0) && internal.isZero(0.0)) return u;
     for (int step = 0; step <= kMaxRefinements; ++step) {
-      const Eigen::VectorXd correction = solve_free(gather(load - internal), iterations);
-      add_free(correction, u);
+      u += solve_nodal(load - internal, iterations);
       InternalForces forces = internal_forces(part->mesh, part->material, u);
       internal = std::move(forces.sum);
       const double scale = std::max(load.norm(), forces.size.norm());
-      residual = gather(load - internal).norm() / scale;
+      residual = felt(load - internal).norm() / scale;
       if (residual <= part->settings.residual_tolerance) return u;
     }
     std::ostringstream text;
@@ -130,10 +148,7 @@ struct StaticSystem::Data {
           loads.size() == 1 ? total : load_vector(part->mesh, part->material, {loads[i]});
       const double size = load.cwiseAbs().maxCoeff();
       largest = std::max(largest, size);
-      const Eigen::VectorXd felt = gather(load);
-      if (size == 0.0 || (felt.size() > 0 && felt.cwiseAbs().maxCoeff() > kRoundOff * size)) {
-        continue;
-      }
+      if (size == 0.0 || felt(load).cwiseAbs().maxCoeff() > kRoundOff * size) continue;
       throw ModelError("load " + std::to_string(i + 1) + " of " + std::to_string(loads.size()) +
                        " acts on held faces only and has no effect: move it off the supports, or "
                        "hold less");
@@ -148,7 +163,8 @@ struct StaticSystem::Data {
 };
 
 StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
-                           StaticSettings settings, std::vector<RemoteMass> masses)
+                           StaticSettings settings, std::vector<RemoteMass> masses,
+                           std::optional<KeptElements> kept)
     : data_(std::make_unique<Data>()) {
   check_mesh(mesh);
   check_material(material);
@@ -166,8 +182,14 @@ StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support>
   held->clamped = clamped_triangles(held->mesh, held->supports);
   held->places = body_places(held->mesh);
   d.part = held;
+  d.equations = free_components(held->constraints);
+  if (kept && d.equations > 0) {
+    d.condensed = std::make_unique<CondensedFactor>(*std::move(kept), held->mesh, held->material,
+                                                    held->constraints);
+    return;
+  }
   d.pattern = order_nodes(held->mesh, held->constraints);
-  if (d.pattern.equations() == 0) return;
+  if (d.equations == 0) return;
   const bool direct = solves_directly(d.pattern, settings);
   require_memory(matrix_bytes(d.pattern) + (direct ? factor_bytes(d.pattern) : 0.0),
                  settings.memory_limit, static_cast<int>(held->mesh.nodes.rows()));
@@ -201,7 +223,7 @@ StaticResult StaticSystem::solve(const std::vector<Load>& given) const {
   StaticResult r = read_result(part, loaded_triangles(part.mesh, loads), load, internal, u);
   r.residual = residual;
   r.iterations = iterations;
-  r.equations = d.pattern.equations();
+  r.equations = d.equations;
   return r;
 }
 

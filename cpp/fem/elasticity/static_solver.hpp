@@ -11,6 +11,7 @@
 #include "fem/elasticity/buckling.hpp"
 #include "fem/elasticity/memory.hpp"
 #include "fem/elasticity/natural_modes.hpp"
+#include "fem/elasticity/substructure.hpp"
 #include "fem/mesh/material.hpp"
 #include "fem/mesh/tet_mesh.hpp"
 #include "fem/stress/peak_stress.hpp"
@@ -89,16 +90,21 @@ struct StaticResult {
   bool peak_resolved() const { return stress_error <= 0.5 * peak_stress; }
 };
 
+// What a model may spend on a factor before it is solved by iteration.
+FactorLimits factor_limits(const StaticSettings& settings);
+
 class UnitResponses;
 
 // A model ordered, assembled and factorized once, for any number of load cases.
 class StaticSystem {
  public:
   // masses: what faces of the part carry; accelerations pull at them and they count in the modes.
+  // kept: of the same supports and material, elements of the mesh that need no factor of their own.
   // Throws SolverError naming the free rigid motions if the supports do not hold the part,
   // MemoryLimitError if no solver fits into the memory limit, and MeshError for inverted elements.
   StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
-               StaticSettings settings = {}, std::vector<RemoteMass> masses = {});
+               StaticSettings settings = {}, std::vector<RemoteMass> masses = {},
+               std::optional<KeptElements> kept = std::nullopt);
   ~StaticSystem();
   StaticSystem(StaticSystem&&) noexcept;
   StaticSystem& operator=(StaticSystem&&) noexcept;

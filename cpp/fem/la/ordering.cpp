@@ -48,15 +48,19 @@ std::vector<int> order_graph(std::vector<int>& start, std::vector<int>& column, 
   return permutation;
 }
 
+bool is_last(const std::vector<char>& last, int node) { return !last.empty() && last[at(node)]; }
+
 // Rank of each free corner vertex in a fill-reducing order of the vertex graph; -1 for others.
+// Vertices that are to be last share the highest rank.
 std::vector<int> vertex_ranks(const TetMesh& mesh, const Constraints& constraints,
-                              VertexOrdering method) {
+                              const std::vector<char>& last, VertexOrdering method) {
   const Incidence elements = elements_of_nodes(mesh, 4);
   const int nodes = static_cast<int>(mesh.nodes.rows());
   std::vector<int> index(at(nodes), -1), vertex;
   for (int v = 0; v < nodes; ++v) {
     if (elements.start[at(v)] == elements.start[at(v) + 1] || !has_free_component(constraints, v))
       continue;
+    if (is_last(last, v)) continue;
     index[at(v)] = static_cast<int>(vertex.size());
     vertex.push_back(v);
   }
@@ -80,6 +84,11 @@ std::vector<int> vertex_ranks(const TetMesh& mesh, const Constraints& constraint
   std::vector<int> rank(at(nodes), -1);
   for (std::size_t k = 0; k < permutation.size(); ++k) {
     rank[at(vertex[at(permutation[k])])] = static_cast<int>(k);
+  }
+  for (int v = 0; v < nodes; ++v) {
+    const bool used = elements.start[at(v)] != elements.start[at(v) + 1];
+    if (used && is_last(last, v) && has_free_component(constraints, v))
+      rank[at(v)] = static_cast<int>(vertex.size());
   }
   return rank;
 }
@@ -139,7 +148,8 @@ void set_positions(std::size_t nodes, NodePattern& pattern) {
   }
 }
 
-void find_neighbors(const TetMesh& mesh, const Incidence& elements, NodePattern& pattern) {
+void find_neighbors(const TetMesh& mesh, const Incidence& elements, const std::vector<char>& last,
+                    NodePattern& pattern) {
   std::vector<int> seen(pattern.order.size(), -1);
   pattern.start.assign(1, 0);
   pattern.neighbor.clear();
@@ -154,36 +164,43 @@ void find_neighbors(const TetMesh& mesh, const Incidence& elements, NodePattern&
         pattern.neighbor.push_back(other);
       }
     }
+    for (int other = k + 1; is_last(last, node) && other < pattern.positions(); ++other) {
+      if (!is_last(last, pattern.order[at(other)]) || seen[at(other)] == k) continue;
+      pattern.neighbor.push_back(other);
+    }
     std::sort(pattern.neighbor.begin() + pattern.start.back(), pattern.neighbor.end());
     pattern.start.push_back(static_cast<int>(pattern.neighbor.size()));
   }
 }
 
 // Positions, neighbors and equations of nodes in their order.
-void number(const TetMesh& mesh, const Constraints& constraints, NodePattern& pattern) {
+void number(const TetMesh& mesh, const Constraints& constraints, const std::vector<char>& last,
+            NodePattern& pattern) {
   set_positions(at(static_cast<int>(mesh.nodes.rows())), pattern);
-  find_neighbors(mesh, elements_of_nodes(mesh, kTetNodes), pattern);
+  find_neighbors(mesh, elements_of_nodes(mesh, kTetNodes), last, pattern);
   number_equations(constraints, pattern);
 }
 
 }  // namespace
 
 NodePattern fill_reducing_order(const TetMesh& mesh, const Constraints& constraints,
-                                VertexOrdering method) {
-  const std::vector<int> key = node_keys(mesh, vertex_ranks(mesh, constraints, method));
+                                VertexOrdering method, const std::vector<char>& last) {
+  const std::vector<int> key = node_keys(mesh, vertex_ranks(mesh, constraints, last, method));
   NodePattern pattern;
   for (int v = 0; v < mesh.nodes.rows(); ++v) {
     if (has_free_component(constraints, v)) pattern.order.push_back(v);
   }
-  std::stable_sort(pattern.order.begin(), pattern.order.end(),
-                   [&](int a, int b) { return key[at(a)] < key[at(b)]; });
-  number(mesh, constraints, pattern);
+  std::stable_sort(pattern.order.begin(), pattern.order.end(), [&](int a, int b) {
+    const bool last_a = is_last(last, a), last_b = is_last(last, b);
+    return last_a == last_b ? key[at(a)] < key[at(b)] : last_b;
+  });
+  number(mesh, constraints, last, pattern);
   return pattern;
 }
 
-NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
-                        VertexOrdering method) {
-  NodePattern pattern = fill_reducing_order(mesh, constraints, method);
+NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints, VertexOrdering method,
+                        const std::vector<char>& last) {
+  NodePattern pattern = fill_reducing_order(mesh, constraints, method, last);
   Elimination elimination =
       analyze(pattern.start, pattern.neighbor, free_components(constraints, pattern.order));
   std::vector<int> order;
@@ -191,7 +208,7 @@ NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
   for (const int k : elimination.order) order.push_back(pattern.order[at(k)]);
   pattern.order = std::move(order);
   pattern.supernodes = std::move(elimination.supernodes);
-  number(mesh, constraints, pattern);
+  number(mesh, constraints, last, pattern);
   return pattern;
 }
 

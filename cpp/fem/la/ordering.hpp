@@ -30,13 +30,16 @@ enum class VertexOrdering { automatic, minimum_degree, nested_dissection };
 // Fill-reducing order: only corner vertices are ordered (minimum degree, or nested dissection for
 // large meshes); each mid-edge node goes just before the earlier eliminated of its two ends.
 // Ordering the corners alone costs a tenth to a thirtieth of ordering all nodes and keeps the fill.
-// The pattern has no supernodes.
+// The pattern has no supernodes. Nodes flagged in `last`, (n) or empty, come after all others, and
+// the pattern couples each of them with every other one.
 NodePattern fill_reducing_order(const TetMesh& mesh, const Constraints& constraints,
-                                VertexOrdering method = VertexOrdering::automatic);
+                                VertexOrdering method = VertexOrdering::automatic,
+                                const std::vector<char>& last = {});
 
 // The fill-reducing order made one of the amalgamated supernodes' tree.
 NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
-                        VertexOrdering method = VertexOrdering::automatic);
+                        VertexOrdering method = VertexOrdering::automatic,
+                        const std::vector<char>& last = {});
 
 // Values of the equations, a column each, as nodal components (3 n, k); zero where held.
 Eigen::MatrixXd nodal_columns(const NodePattern& pattern, const Eigen::MatrixXd& free);

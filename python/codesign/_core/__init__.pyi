@@ -16,13 +16,16 @@ __all__: list[str] = [
     "LoadCase",
     "PartAnalysis",
     "PartCase",
+    "Stretch",
     "VaryingCase",
     "analyze_part",
     "dynamics",
     "evaluate",
     "fem",
+    "forget_meshes",
     "interrupt",
     "library_versions",
+    "limit_kept_meshes",
     "linked_libraries",
 ]
 
@@ -97,6 +100,44 @@ class VaryingCase:
         ]
     ]: ...
 
+class Stretch:
+    """
+    Makes a body longer or shorter along a unit direction: what lies at most `start` behind the origin [m] stays, what lies at least `end` behind it moves by `change` [m]. Raises: ValueError (no unit direction, an empty zone, more than two thirds of it lost).
+    """
+    def __init__(
+        self,
+        origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        direction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        start: typing.SupportsFloat | typing.SupportsIndex,
+        end: typing.SupportsFloat | typing.SupportsIndex,
+        change: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def change(self) -> float:
+        """
+        m, of the zone's length
+        """
+    @property
+    def direction(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) unit vector
+        """
+    @property
+    def end(self) -> float:
+        """
+        m along the direction
+        """
+    @property
+    def origin(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        (3,) m
+        """
+    @property
+    def start(self) -> float:
+        """
+        m along the direction
+        """
+
 class PartCase:
     """
     One part and its load cases; supports and loads name surface faces.
@@ -150,6 +191,13 @@ class PartCase:
     def modes(self, arg0: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     @property
     def settings(self) -> fem.StaticSettings: ...
+    @property
+    def stretch(self) -> Stretch | None:
+        """
+        Stretch, or None: the part is the surface's body stretched; parts that differ by it alone share a mesh and most of its factor
+        """
+    @stretch.setter
+    def stretch(self, arg0: Stretch | None) -> None: ...
     @property
     def supports(self) -> list[fem.Support]: ...
     @property
@@ -266,9 +314,19 @@ def evaluate(
     Meshes and solves every part, loads the robot and flies it once for every seed of the disturbances: the native half of the chain in one call, without the GIL.
     """
 
+def forget_meshes() -> bool:
+    """
+    Frees what is kept of stretched parts; whether there was anything.
+    """
+
 def library_versions() -> dict[str, str]:
     """
     What the module was built with.
+    """
+
+def limit_kept_meshes(bytes: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    """
+    What this process may keep of the meshes and factors of stretched parts, 256 MB at first.
     """
 
 def linked_libraries() -> dict[str, str]:

@@ -28,6 +28,7 @@ from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.identity import Identity
 from codesign.problem.protocols import Problem, Rival
+from codesign.units import MEBIBYTE
 
 DEFAULT_LOADER = "codesign.chain.study:load_study"
 START_LIMIT = 120.0  # s for a worker to import and load the study
@@ -123,6 +124,15 @@ class _Worker:
         return f"pid {self.process.pid}"
 
 
+def kept_mib(workers: int, memory_mib: int) -> int:
+    """What each of some workers may keep of meshes and factors for later designs [MiB].
+
+    A quarter of the machine's memory in all, of one worker 1.5 GiB and a third of its limit (0: none) at the most.
+    """
+    machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // int(MEBIBYTE)
+    return min(1536, machine // (4 * workers), memory_mib // 3 if memory_mib else 1536)
+
+
 class LocalPool:
     """Worker processes on this machine, one evaluation at a time each.
 
@@ -135,6 +145,7 @@ class LocalPool:
         if workers < 1:
             raise ValueError(f"workers = {workers}: at least 1 is needed")
         self._study, self._limits, self._cache = study, limits or Limits(), str(cache or "")
+        self._kept_mib = kept_mib(workers, self._limits.memory_mib)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
         self._waiting: deque[Task] = deque()
@@ -196,7 +207,7 @@ class LocalPool:
         command = [sys.executable, "-P", "-m", module, self._study.loader, self._study.source, self._cache]
         stderr = tempfile.TemporaryFile("a+b")  # noqa: SIM115 - lives as long as the worker
         process = subprocess.Popen(
-            [*command, str(self._limits.memory_mib)],
+            [*command, str(self._limits.memory_mib), str(self._kept_mib)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=stderr,

@@ -105,7 +105,7 @@ def read_tasks(stream: IO[bytes], tasks: queue.SimpleQueue[dict[str, Any]]) -> N
 
 def main(arguments: list[str]) -> None:
     """Loads the study, says so, then answers tasks until the parent goes away."""
-    loader, source, cache_path, memory_mib = arguments
+    loader, source, cache_path, memory_mib, kept_mib = arguments
     die_with_parent()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     faulthandler.enable()
@@ -127,6 +127,7 @@ def main(arguments: list[str]) -> None:
         return
     write_message(answers, {"ready": study.hash, "identity": study.identity.document()})
     limit_memory(int(memory_mib))
+    importlib.import_module("codesign._core").limit_kept_meshes(int(kept_mib) * MEBIBYTE)
     while True:
         task = tasks.get()
         started = time.perf_counter()

@@ -347,13 +347,15 @@ def native_case(
     *,
     copies: int = 1,
     facet_angle_deg: float = 25.0,
+    stretch: _core.Stretch | None = None,
     at_point: Callable[[fem.AffineTraction], fem.Load] = as_given,
     mass_on: Callable[[fem.RemoteMass], fem.RemoteMass] = same_mass,
 ) -> _core.PartCase:
     """What `codesign._core.evaluate` meshes and solves.
 
-    copies: 2 for one half of a symmetric part; work and stress_50 then refer to the whole part. at_point: as in
-    `load_cases`, for the unit loads of flown cases; mass_on: the same for masses.
+    copies: 2 for one half of a symmetric part; work and stress_50 then refer to the whole part. stretch: from the body
+    of the surface to the part (codesign.parts.stretch). at_point: as in `load_cases`, for the unit loads of flown
+    cases; mass_on: the same for masses.
     """
     static = _core.fem.StaticSettings()
     static.exclusion = getattr(_core.fem.ExclusionRule, settings.exclusion)
@@ -372,6 +374,7 @@ def native_case(
         tolerance=settings.tolerance,
         max_refinements=MAX_REFINEMENTS if settings.accuracy == "converged" else 0,
     )
+    case.stretch = stretch
     case.varying = [
         _core.VaryingCase(flown.name, [native_loads(None, unit) for unit in unit_loads(flown, at_point)])
         for flown in settings.flown

@@ -144,8 +144,7 @@ class Part(ABC):
 
     def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> SurfaceMesh:
         """Closed surface in meters of the shape to be analyzed; `geometry` and `variant` as in `fem_shape`."""
-        resolution = Resolution(segments, FEM_CHORD_MM * (48.0 / segments) ** 2)
-        return surface_mesh(_checked(self.fem_shape(geometry, **variant), resolution).tidied())
+        return _fem_surface(self, geometry, segments, tuple(variant.items()))
 
     def mass_properties(self) -> MassProperties:
         """Mass (to 1e-5), center of mass and inertia (to 5e-5) of the true curved solid, part frame, SI."""
@@ -206,6 +205,13 @@ class MirroredPart(Part):
 def _solid(part: Part, resolution: Resolution) -> Solid:
     """Mesh of a part; the last ones are kept, since mass, surface and files ask for the same."""
     return _checked(part.shape(), resolution, part.through_holes()).tidied()
+
+
+@lru_cache(maxsize=128)
+def _fem_surface(part: Part, geometry: str, segments: int, variant: tuple[tuple[str, Any], ...]) -> SurfaceMesh:
+    """Surface to be analyzed; kept, since designs that are stretched from one share it."""
+    resolution = Resolution(segments, FEM_CHORD_MM * (48.0 / segments) ** 2)
+    return surface_mesh(_checked(part.fem_shape(geometry, **dict(variant)), resolution).tidied())
 
 
 @lru_cache(maxsize=64)

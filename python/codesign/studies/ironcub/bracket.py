@@ -24,6 +24,7 @@ from codesign.parts.load_case import (
     native_case,
 )
 from codesign.parts.part import Part, parameter
+from codesign.parts.stretch import meshed_length, stretch_mm
 from codesign.units import MILLIMETER
 
 BASE = 15.0  # thickness of the base; the slab's is a field, see `thickness`
@@ -37,6 +38,7 @@ COUNTERBORE_RADIUS, COUNTERBORE_DEPTH = 3.0, 3.4  # of the seat's holes, from th
 SCREW_RADIUS = 4.2
 TURBINE_REACH = 95.0  # from the seat's center to the turbine's axis on the right; 94.5 on the left
 MINIMUM_WALL = 2.0
+TYPICAL_ZONE, SHORTEST_ZONE = 54.0, 4.0  # of the slab, that is stretched
 FAR = 400.0  # beyond the part, for tools that cut through
 
 
@@ -230,7 +232,8 @@ class JetpackBracket(Part):
             _symmetric(load) for case in settings.cases for load in case.loads
         )
         supports = list(settings.supports) if settings.support == "published" else ["pad", "screw_seat"]
-        surface = self.fem_surface(settings.geometry, settings.segments, support=settings.support, half=half)
+        meshed, stretch = self._stretched_from(settings)
+        surface = meshed.fem_surface(settings.geometry, settings.segments, support=settings.support, half=half)
         center = self.turbine_axis if settings.load == "thrust_line" else self.seat_center
         slab = fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
         disc = None if self._has_seat(settings.geometry) else slab
@@ -248,10 +251,23 @@ class JetpackBracket(Part):
 
         cases = load_cases(settings, on_face, at_point)
         held = [*held_faces(supports), *([fem.Support("symmetry", axes="y", symmetry=True)] if half else [])]
-        size = self._size_field(settings, half)
+        size = meshed._size_field(settings, half)
         return native_case(
-            settings, surface, size, held, cases, copies=2 if half else 1, at_point=at_point, mass_on=mass_on
-        )
+            settings, surface, size, held, cases, copies=2 if half else 1, stretch=stretch, at_point=at_point,
+            mass_on=mass_on,
+        )  # fmt: skip
+
+    def _stretched_from(self, settings: StressSettings) -> tuple[JetpackBracket, _core.Stretch | None]:
+        """The bracket that is meshed, and how its slab is stretched between creases and seat to be this one."""
+        if settings.accuracy != "optimization":
+            return self, None
+        start, before_seat = (8.0, SEAT_RADIUS + 2.0) if self._has_seat(settings.geometry) else (14.0, 0.0)
+        zone = self.distance - before_seat - start
+        if zone < SHORTEST_ZONE:
+            return self, None
+        meshed = replace(self, distance=start + meshed_length(zone, TYPICAL_ZONE) + before_seat)
+        end, change = meshed.distance - before_seat, self.distance - meshed.distance
+        return meshed, stretch_mm(self.upper_crease, self.slab_direction, start, end, change)
 
     @property
     def _half_floor_aside(self) -> Vector:
@@ -261,9 +277,10 @@ class JetpackBracket(Part):
         return np.array([0.0, moment / floor, 0.0]) * MILLIMETER
 
     def _size_field(self, settings: StressSettings, half: bool) -> fem.SizeField:
-        """Fine along lines 2 mm behind each crease, on the side away from the clamp."""
+        """Fine along lines 2 mm behind each crease, on the side away from the clamp; the peak is at the upper one."""
         fine = settings.accuracy != "optimization"
-        base, size, growth, radius = (8.0, 0.5, 0.35, 2.0) if fine else (12.0, 0.8, 0.5, 1.5)
+        base, growth = (8.0, 0.35) if fine else (12.0, 0.6)
+        lower, upper = ((0.5, 2.0), (0.5, 2.0)) if fine else ((1.1, 1.5), (0.9, 2.2))  # size, radius
         across = np.array([0.0, self.half_width, 0.0])
         behind = 2.0 * MILLIMETER * self.slab_direction
         sources = [
@@ -273,7 +290,7 @@ class JetpackBracket(Part):
                 growth,
                 radius * MILLIMETER,
             )
-            for crease in (self.lower_crease, self.upper_crease)
+            for crease, (size, radius) in ((self.lower_crease, lower), (self.upper_crease, upper))
         ]
         if self.seat_analyzed:
             sources += self._counterbore_sources(fine, half)

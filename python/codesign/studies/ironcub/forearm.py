@@ -7,7 +7,7 @@ towards -z. The right part is the mirror image in z.
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from codesign.geometry.shape import (
 )
 from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, held_faces, load_cases, native_case
 from codesign.parts.part import Part, parameter
+from codesign.parts.stretch import meshed_length, stretch_mm
 from codesign.units import MILLIMETER
 
 AXIS: Triple = (0.0, 15.0, 0.0)  # a point of the rod's axis
@@ -43,6 +44,7 @@ HUB_RADIUS, RING_RADIUS, BORE_RADIUS, BLEND_RADIUS = 27.5, 65.9, 60.9, 25.0
 SCREW_HOLE = 2.0  # radius
 FLANGE_HOLES = ((SCREW_HOLE, polar(11.7, 135.0, -135.0)), (1.25, polar(12.5, 160.0, -160.0)))
 MINIMUM_WALL = 2.0
+TYPICAL_ZONE, SHORTEST_ZONE = 72.0, 8.0  # of the rod, that is stretched
 NOZZLE_REACH = 146.1  # from the distal face to the nozzle's exit
 
 
@@ -103,25 +105,25 @@ class ForearmJetSupport(Part):
         return self._build()
 
     def fem_shape(self, geometry: str = "simplified") -> Shape:
-        """The part as it is analyzed: "full", or "simplified" without stub, spigot and spot faces.
+        """The part as it is analyzed: "full", or "simplified" without stub, spigot and the flange's holes.
 
         Both have the faces `mount` and `seat`.
         """
         if geometry not in ("full", "simplified"):
             raise ValueError(f"geometry = {geometry!r}: must be 'full' or 'simplified'")
         whole = geometry == "full"
-        return self._build(stub=whole, spigot=whole, spot_faces=whole)
+        return self._build(stub=whole, spigot=whole, holes=whole)
 
-    def _build(self, stub: bool = True, spigot: bool = True, spot_faces: bool = True) -> Shape:
+    def _build(self, stub: bool = True, spigot: bool = True, holes: bool = True) -> Shape:
         turned = self._turned(stub, spigot) - self._relief()
         if stub:
             flat = box((-8.0, 6.856, -4.0), (7.0, 10.0, 4.0), y0="mount", z0="mount", z1="mount").moved(*AXIS)
             turned = turned - flat - flat.rotated("x", 180.0, about=AXIS)
         clamp = Extrusion(self.clamp_outline(), self._seat_x, self._clamp_x, ACROSS, start_face="seat")
         shape = union(turned, self._flange(), clamp)
-        for radius, centers in FLANGE_HOLES:
+        for radius, centers in FLANGE_HOLES if holes else ():
             hole = cylinder(radius, RELIEF_X, -5.0)
-            if radius == SCREW_HOLE and spot_faces and self.spot_face > radius:
+            if radius == SCREW_HOLE and self.spot_face > radius:
                 hole = stepped_hole((self.spot_face, RELIEF_X, ROD_X), (radius, ROD_X, -5.0))
             shape = shape - at_points(hole, centers).placed(ACROSS)
         return shape
@@ -239,30 +241,44 @@ class ForearmJetSupport(Part):
         def traction(load: PressedFace | PushedFace) -> fem.Load:
             return fem.AffineTraction(load.face, load.along((1.0, 0.0, 0.0)), point)
 
+        meshed, stretch = self._stretched_from(settings)
         return native_case(
             settings,
-            self.fem_surface(settings.geometry, settings.segments),
-            self._size_field(settings),
+            meshed.fem_surface(settings.geometry, settings.segments),
+            meshed._size_field(settings),
             held_faces(settings.supports),
             load_cases(settings, traction),
             facet_angle_deg=20.0,
+            stretch=stretch,
         )
 
+    def _stretched_from(self, settings: StressSettings) -> tuple[ForearmJetSupport, _core.Stretch | None]:
+        """The support that is meshed, and how its rod is stretched to be this one."""
+        start, end = ROD_X - RELIEF_X + 2.0, self.fillet + 3.0  # from the rod's ends
+        zone = self.length - start - end
+        if settings.accuracy != "optimization" or zone < SHORTEST_ZONE:
+            return self, None
+        meshed = replace(self, length=start + meshed_length(zone, TYPICAL_ZONE) + end)
+        rod_start, _ = self.rod_ends
+        along = np.array([-1.0, 0.0, 0.0])
+        return meshed, stretch_mm(rod_start, along, start, meshed.length - end, self.length - meshed.length)
+
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
-        """Arcs inside the fillets at both ends of the rod, finest on the side of the ring, and the rod itself."""
+        """Arcs inside the fillets at the rod's ends, finest at the collar on the side of the ring; the rod itself."""
         fine = settings.accuracy != "optimization"
-        base, fillet, growth, rod = (8.0, 0.35, 0.35, 4.0) if fine else (12.0, 0.5, 0.5, 5.0)
+        base, near, far, opposite = (8.0, 0.35, 0.35, 2.0) if fine else (20.0, 0.45, 0.7, 3.0)
+        growth, rod, rod_growth = (0.35, 4.0, 0.35) if fine else (0.5, 7.0, 0.8)
         start, end = self.rod_ends
         turn = np.radians(np.linspace(-20.0, 20.0, 9))
         inside = np.array([0.8 * MILLIMETER, 0.0, 0.0])
         sources = []
-        for side, edge in ((-1.0, fillet), (1.0, 2.0 * fillet)):
+        for side, factor in ((-1.0, 1.0), (1.0, opposite)):
             arc = (self.rod_radius + 0.4 * MILLIMETER) * np.column_stack(
                 [0.0 * turn, np.sin(turn), side * np.cos(turn)]
             )
             sources += [
-                fem.SizeSource(center + arc, edge * MILLIMETER, growth, 0.6 * MILLIMETER)
-                for center in (start - inside, end + inside)
+                fem.SizeSource(center + arc, factor * size * MILLIMETER, growth, 0.6 * MILLIMETER)
+                for center, size in ((start - inside, far), (end + inside, near))
             ]
-        sources.append(fem.SizeSource(np.array([start, end]), rod * MILLIMETER, growth, self.rod_radius))
+        sources.append(fem.SizeSource(np.array([start, end]), rod * MILLIMETER, rod_growth, self.rod_radius))
         return fem.SizeField(base * MILLIMETER, sources)

@@ -1,0 +1,180 @@
+#include "fem/kept_meshes.hpp"
+
+#include <list>
+#include <mutex>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "errors.hpp"
+#include "fem/meshing/tet_mesher.hpp"
+
+namespace codesign::fem {
+namespace {
+
+// Everything that decides a result, in its bytes.
+class Key {
+ public:
+  template <class T>
+  requires std::is_arithmetic_v<T> Key& add(const T& value) { return add(&value, 1); }
+  template <class Derived>
+  Key& add(const Eigen::PlainObjectBase<Derived>& matrix) {
+    add(matrix.rows());
+    return add(matrix.data(), static_cast<std::size_t>(matrix.size()));
+  }
+  template <class T>
+  Key& add(const std::vector<T>& values) {
+    add(values.size());
+    return add(values.data(), values.size());
+  }
+  const std::string& bytes() const { return bytes_; }
+
+  template <class T>
+  Key& add(const T* values, std::size_t count) {
+    bytes_.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+    return *this;
+  }
+
+ private:
+  std::string bytes_;
+};
+
+std::string mesh_key(const SurfaceMesh& surface, const SizeField& size,
+                     const MeshOptions& options) {
+  Key key;
+  key.add(surface.points).add(surface.triangles).add(surface.face);
+  for (const std::string& name : surface.face_names)
+    key.add(name.size()).add(name.data(), name.size());
+  key.add(size.base);
+  for (const SizeSource& source : size.sources)
+    key.add(source.points).add(source.size).add(source.growth).add(source.radius);
+  for (const auto& wall : size.walls) key.add(reinterpret_cast<std::size_t>(wall.get()));
+  key.add(options.feature_angle).add(options.simplify).add(options.facet_distance);
+  key.add(options.facet_angle).add(options.radius_edge).add(options.sliver_angle);
+  key.add(options.flat_angle).add(options.curved).add(options.max_questions);
+  key.add(options.max_vertices).add(options.check_intersections).add(options.topology_rounds);
+  return key.bytes();
+}
+
+std::string elements_key(const Stretch& stretch, const Material& material,
+                         const Constraints& constraints) {
+  Key key;
+  key.add(stretch.origin).add(stretch.direction).add(stretch.from).add(stretch.to);
+  key.add(material.young_modulus).add(material.poisson_ratio).add(constraints.fixed);
+  return key.bytes();
+}
+
+double mesh_bytes(const TetMesh& mesh) {
+  return sizeof(double) * static_cast<double>(mesh.nodes.size()) +
+         sizeof(int) * static_cast<double>(mesh.tets.size() + mesh.boundary.size());
+}
+
+struct Entry {
+  std::string key;
+  std::shared_ptr<const TetMesh> mesh;
+  std::vector<std::pair<std::string, KeptElements>> elements;
+
+  double factor_bytes() const {
+    double sum = 0.0;
+    for (const auto& [key_of, kept] : elements) sum += kept.rest->bytes();
+    return sum;
+  }
+  double own_bytes() const { return mesh_bytes(*mesh) + static_cast<double>(key.size()); }
+};
+
+struct Store {
+  std::mutex mutex;
+  double limit = 256e6;      // bytes
+  std::list<Entry> entries;  // the last used first
+
+  Entry* find(const std::string& key) {
+    for (auto entry = entries.begin(); entry != entries.end(); ++entry) {
+      if (entry->key != key) continue;
+      entries.splice(entries.begin(), entries, entry);
+      return &entries.front();
+    }
+    return nullptr;
+  }
+
+  Entry* find(const TetMesh* mesh) {
+    for (Entry& entry : entries)
+      if (entry.mesh.get() == mesh) return &entry;
+    return nullptr;
+  }
+
+  void shrink() {
+    double sum = 0.0;
+    for (const Entry& entry : entries) sum += entry.own_bytes() + entry.factor_bytes();
+    for (auto entry = entries.rbegin(); entry != entries.rend() && sum > limit; ++entry) {
+      sum -= entry->factor_bytes();
+      entry->elements.clear();
+    }
+    while (entries.size() > 1 && sum > limit) {
+      sum -= entries.back().own_bytes();
+      entries.pop_back();
+    }
+  }
+};
+
+Store& store() {
+  static Store instance;
+  return instance;
+}
+
+}  // namespace
+
+void limit_kept_meshes(double bytes) {
+  const std::lock_guard<std::mutex> lock(store().mutex);
+  store().limit = bytes;
+  store().shrink();
+}
+
+bool forget_meshes() {
+  const std::lock_guard<std::mutex> lock(store().mutex);
+  const bool any = !store().entries.empty();
+  store().entries.clear();
+  return any;
+}
+
+std::shared_ptr<const TetMesh> kept_mesh(const SurfaceMesh& surface, const SizeField& size,
+                                         const MeshOptions& options) {
+  std::string key = mesh_key(surface, size, options);
+  {
+    const std::lock_guard<std::mutex> lock(store().mutex);
+    if (const Entry* entry = store().find(key)) return entry->mesh;
+  }
+  auto mesh = std::make_shared<const TetMesh>(tetrahedralize(surface, size, options));
+  const std::lock_guard<std::mutex> lock(store().mutex);
+  if (const Entry* entry = store().find(key)) return entry->mesh;  // another thread was faster
+  store().entries.push_front({std::move(key), mesh, {}});
+  store().shrink();
+  return mesh;
+}
+
+std::optional<KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& mesh,
+                                          const Stretch& stretch, const Material& material,
+                                          const Constraints& constraints,
+                                          const FactorLimits& limits) {
+  const std::string key = elements_key(stretch, material, constraints);
+  {
+    const std::lock_guard<std::mutex> lock(store().mutex);
+    if (const Entry* entry = store().find(mesh.get()))
+      for (const auto& [other, elements] : entry->elements)
+        if (other == key) return elements;
+  }
+  KeptElements elements;
+  try {
+    elements = keep_elements(*mesh, reshaped_tets(*mesh, stretch), material, constraints, limits);
+  } catch (const MemoryLimitError&) {
+    return std::nullopt;
+  }
+  const std::lock_guard<std::mutex> lock(store().mutex);
+  if (Entry* entry = store().find(mesh.get())) {
+    entry->elements.emplace_back(key, elements);
+    store().shrink();
+  }
+  return elements;
+}
+
+}  // namespace codesign::fem

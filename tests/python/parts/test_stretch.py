@@ -1,0 +1,93 @@
+"""Parts whose mesh is that of another length, stretched."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import codesign
+from codesign import _core, fem
+from codesign.chain.chain import stress_settings
+from codesign.parts.load_case import part_case
+from codesign.parts.part import Part
+from codesign.parts.stretch import RATIO, meshed_length
+from codesign.studies.ironcub.bracket import JetpackBracket
+from codesign.studies.ironcub.forearm import ForearmJetSupport
+
+LONG_AND_SHORT = [
+    JetpackBracket(15.0, 40.0),
+    JetpackBracket(60.0, 118.0),
+    JetpackBracket(30.0, 40.0, seat_analyzed=True),
+    ForearmJetSupport(80.0, 50.0),
+    ForearmJetSupport(120.0, 150.0),
+]
+
+
+def _case(part: Part) -> _core.PartCase:
+    config = codesign.load_study("ironcub_paper").config
+    return part_case(part, stress_settings(config, part.name))
+
+
+def test_meshed_length_is_near_by_ratio() -> None:
+    for length in np.geomspace(0.5, 3000.0, 200):
+        assert RATIO**-0.5 <= meshed_length(length, 54.0) / length <= RATIO**0.5 * (1.0 + 1e-12)
+    assert meshed_length(54.0, 54.0) == 54.0
+
+
+@pytest.mark.parametrize("part", LONG_AND_SHORT, ids=lambda part: part.title)
+def test_the_stretched_mesh_is_the_parts_own_body(part: Part) -> None:
+    case = _case(part)
+    assert case.stretch is not None
+    mesh = _core.analyze_part(case).mesh
+    settings = stress_settings(codesign.load_study("ironcub_paper").config, part.name)
+    direct = part_case(part, replace(settings, accuracy="fine")).surface
+    a, b, c = np.moveaxis(direct.points[direct.triangles], 1, 0)
+    volume = float(np.einsum("ni,ni->", a, np.cross(b, c)) / 6.0)
+    assert mesh.quality.volume == pytest.approx(volume, rel=0.015)  # between corners: without the bulge of curved sides
+    assert mesh.quality.min_dihedral_deg > 3.0
+    assert np.allclose(mesh.nodes.min(axis=0), direct.points.min(axis=0), atol=1e-4)
+    assert np.allclose(mesh.nodes.max(axis=0), direct.points.max(axis=0), atol=1e-4)
+
+
+def test_a_result_does_not_depend_on_what_was_analyzed_before() -> None:
+    _core.forget_meshes()
+    first = _core.analyze_part(_case(JetpackBracket(20.0, 60.0))).result
+    for distance in (44.0, 100.0):  # the same mesh
+        _core.analyze_part(_case(JetpackBracket(20.0, distance)))
+    again = _core.analyze_part(_case(JetpackBracket(20.0, 60.0))).result
+    assert _core.forget_meshes()
+    assert not _core.forget_meshes()
+    alone = _core.analyze_part(_case(JetpackBracket(20.0, 60.0))).result
+    for other in (again, alone):
+        assert np.array_equal(first.displacement, other.displacement)
+        assert first.peak_stress == other.peak_stress
+
+
+def test_a_material_has_its_own_factor() -> None:
+    _core.forget_meshes()
+    settings = stress_settings(codesign.load_study("ironcub_paper").config, "jetpack_bracket")
+    ergal = settings.material
+    soft = replace(settings, material=fem.Material("soft", 1e9, ergal.poisson_ratio, ergal.density, 1e6))
+    stiff, other = (_core.analyze_part(part_case(JetpackBracket(20.0, 60.0), s)).result for s in (settings, soft))
+    assert other.max_displacement == pytest.approx(stiff.max_displacement * ergal.young_modulus / 1e9)
+
+
+def test_a_limit_of_nothing_keeps_results() -> None:
+    kept = _core.analyze_part(_case(ForearmJetSupport(90.0, 70.0))).result
+    _core.limit_kept_meshes(0.0)
+    try:
+        for _ in range(2):
+            assert _core.analyze_part(_case(ForearmJetSupport(90.0, 70.0))).result.peak_stress == kept.peak_stress
+    finally:
+        _core.limit_kept_meshes(256e6)
+
+
+def test_a_refined_mesh_is_of_the_parts_own_surface() -> None:
+    settings = stress_settings(codesign.load_study("ironcub_paper").config, "forearm_support")
+    assert part_case(ForearmJetSupport(90.0, 70.0), replace(settings, accuracy="converged")).stretch is None
+    case = _case(ForearmJetSupport(90.0, 70.0))
+    case.max_refinements = 1
+    with pytest.raises(ValueError, match="own surface"):
+        _core.analyze_part(case)
