@@ -19,6 +19,9 @@ namespace codesign::fem {
 
 namespace {
 
+// Load cases and designs that a kept factor serves, at least: it may take so much longer than one
+// that serves a single solution.
+constexpr double kDesignsServed = 8.0;
 // Corner nodes that an analysis by iteration can afford: measured on tubes and plates of 2 to 4
 // elements across the wall (benchmarks/robustness/limits.py).
 constexpr double kBytesPerVertex = 2.2e4;
@@ -142,9 +145,12 @@ StaticSystem make_system(const PartCase& part, const std::shared_ptr<const TetMe
   StaticSettings settings = part.settings;
   settings.solutions = solutions(part);
   std::optional<KeptElements> elements;
-  if (kept)
+  if (kept) {
+    FactorLimits limits = factor_limits(settings);
+    limits.operations *= kDesignsServed;
     elements = kept_elements(kept, *part.stretch, part.material, constrain(*kept, part.supports),
-                             factor_limits(settings));
+                             limits);
+  }
   return {mesh, part.material, part.supports, settings, part.masses, std::move(elements)};
 }
 

@@ -84,6 +84,7 @@ struct StaticSystem::Data {
 
   // Of the memory limit, beside what the solution by iteration holds. [bytes]
   double memory_left() const {
+    if (condensed) return part->settings.memory_limit;
     return part->settings.memory_limit - matrix_bytes(pattern) - preconditioner->bytes();
   }
 
