@@ -297,14 +297,18 @@ class JetpackBracket(Part):
         return fem.SizeField(base * MILLIMETER, sources)
 
     def _counterbore_sources(self, fine: bool, half: bool) -> list[fem.SizeSource]:
-        """Fine around the edges of the counterbores on the slab's upper face."""
-        size, growth = (0.5, 0.35) if fine else (0.7, 0.5)
-        radius = COUNTERBORE_RADIUS + 0.5
-        centers = [self._seat_frame.point(x, y, self.thickness) for x, y in SEAT_HOLES if y > 0.0 or not half]
-        return [
-            fem.SizeSource(np.array([center]) * MILLIMETER, size * MILLIMETER, growth, radius * MILLIMETER)
-            for center in centers
-        ]
+        """Circles along the counterbores' edges on the slab's upper face, finest where the slab bends most."""
+        turn = np.linspace(0.0, 2.0 * math.pi, 17)
+        nearest = min(x for x, _ in SEAT_HOLES)
+        sources = []
+        for x, y in SEAT_HOLES:
+            if half and y < 0.0:
+                continue
+            size, growth, radius = (0.5, 0.35, 0.5) if fine else ((0.5 if x == nearest else 1.4), 0.5, 0.5)
+            edge = zip(x + COUNTERBORE_RADIUS * np.cos(turn), y + COUNTERBORE_RADIUS * np.sin(turn), strict=True)
+            points = np.array([self._seat_frame.point(*at, self.thickness) for at in edge]) * MILLIMETER
+            sources.append(fem.SizeSource(points, size * MILLIMETER, growth, radius * MILLIMETER))
+        return sources
 
 
 def _symmetric(load: PartLoad) -> bool:
