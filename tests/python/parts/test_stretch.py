@@ -47,8 +47,8 @@ def test_the_stretched_mesh_is_the_parts_own_body(part: Part) -> None:
     volume = float(np.einsum("ni,ni->", a, np.cross(b, c)) / 6.0)
     assert mesh.quality.volume == pytest.approx(volume, rel=0.015)  # between corners: without the bulge of curved sides
     assert mesh.quality.min_dihedral_deg > 3.0
-    assert np.allclose(mesh.nodes.min(axis=0), direct.points.min(axis=0), atol=1e-4)
-    assert np.allclose(mesh.nodes.max(axis=0), direct.points.max(axis=0), atol=1e-4)
+    assert np.allclose(mesh.nodes.min(axis=0), direct.points.min(axis=0), atol=2e-4)
+    assert np.allclose(mesh.nodes.max(axis=0), direct.points.max(axis=0), atol=2e-4)
 
 
 def test_a_result_does_not_depend_on_what_was_analyzed_before() -> None:
