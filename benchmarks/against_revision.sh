@@ -4,6 +4,8 @@
 #   benchmarks/against_revision.sh REV
 #       CPU time of each stage: median of ROUNDS (5) alternating runs, one thread, ratio here / REV, and of REV against
 #       itself (what the machine's noise is)
+#   benchmarks/against_revision.sh --designs COUNT REV
+#       CPU time a random design of COUNT new ones in one process (parts and whole evaluations), in the same way
 #   benchmarks/against_revision.sh --results REV
 #       all numbers of ten designs and of a run of 12 x 3, bit for bit; exit code 1 if any differs (times, hashes and
 #       provenance apart)
@@ -12,8 +14,9 @@
 # Leave the sources alone while it runs: workers that load another program than the run are refused.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-kind=times
-if [ "${1:-}" = --results ]; then kind=results; shift; fi
+kind=(times)
+if [ "${1:-}" = --results ]; then kind=(results); shift; fi
+if [ "${1:-}" = --designs ]; then kind=(designs "$2"); shift 2; fi
 [ $# = 1 ] || { sed -n '2,/^set/s/^# \{0,1\}//p' "$0" | head -n -1; exit 2; }
 python=${PYTHON:-.venv/bin/python}
 commit=$(git rev-parse --short=12 --verify "$1^{commit}")
@@ -47,7 +50,7 @@ job() { # NAME ARGUMENTS...: from an empty folder, so that no source tree is on 
   (cd "$work" && CODESIGN_CACHE=$work/cache-$name "${interpreter[$name]}" -P "$OLDPWD/benchmarks/revision/job.py" "$@")
 }
 
-if [ $kind = results ]; then
+if [ "${kind[0]}" = results ]; then
   for name in here revision; do job $name results "$work/$name.json"; done
   "$python" benchmarks/revision/report.py results "$work/here.json" "$work/revision.json"
 else
@@ -55,7 +58,7 @@ else
   for ((round = 0; round < ${ROUNDS:-5}; round++)); do
     for k in 0 1 2; do
       name=${order[(k + round) % 3]}
-      printf '%s %s\n' "$name" "$(job "$name" times 2> "$work/$name.places")" >> "$work/times"
+      printf '%s %s\n' "$name" "$(job "$name" "${kind[@]}" 2> "$work/$name.places")" >> "$work/times"
     done
     echo "round $((round + 1)) of ${ROUNDS:-5}" >&2
   done

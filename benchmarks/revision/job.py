@@ -1,6 +1,7 @@
 """The jobs that against_revision.sh has several revisions of codesign do; run by the Python of each.
 
 python benchmarks/revision/job.py times            CPU seconds of each stage, one JSON document
+python benchmarks/revision/job.py designs COUNT    CPU seconds a random design, all parts new
 python benchmarks/revision/job.py results FILE     numbers of ten designs and of a small run, as JSON
 
 Revisions differ in where things are, so this file looks for them in the places that they have had.
@@ -101,13 +102,54 @@ def times() -> dict[str, float]:
     return seconds
 
 
+def random_designs(study: codesign.Study, count: int) -> list[dict[str, Any]]:
+    """Of the study's grid, always the same."""
+    draw = random.Random(1)
+    grids = [[draw.randrange(levels) for levels in study.space.levels] for _ in range(count)]
+    return [study.space.from_indices(grid).to_dict() for grid in grids]
+
+
+def designs(count: int) -> dict[str, float]:
+    """CPU seconds a random design: each part from its case to its stress, and the whole evaluation, nothing cached.
+
+    A revision that keeps meshes and factors in its processes may keep as much as in a worker of a run.
+    """
+    study = published_study()
+    thetas = random_designs(study, count)
+    worker_keeps(study)
+    seconds: dict[str, float] = {}
+    for name in study.build_parts(thetas[0]):
+        forget()
+        settings = find("stress_settings")(study.config, name)
+        parts = [study.build_parts(theta)[name] for theta in thetas]
+        stage = cpu(lambda parts=parts, settings=settings: [_analyzed(part, settings) for part in parts])
+        seconds[f"{name}: case to stress"] = stage / count
+    forget()
+    seconds["evaluate"] = cpu(lambda: [study.evaluate(theta) for theta in thetas]) / count
+    return seconds
+
+
+def _analyzed(part: Any, settings: Any) -> None:
+    find("analyze_part")(find("part_case")(part, settings))
+
+
+def worker_keeps(study: codesign.Study) -> None:
+    """What a worker of a run may keep of meshes and factors, where a revision keeps any."""
+    if hasattr(_core, "limit_kept_meshes"):
+        pool = importlib.import_module("codesign.execution.pool")
+        _core.limit_kept_meshes(pool.kept_mib(2, study.config.execution.memory_limit_mib) * 2.0**20)
+
+
+def forget() -> None:
+    """Frees what is kept of parts before."""
+    if hasattr(_core, "forget_meshes"):
+        _core.forget_meshes()
+
+
 def results() -> dict[str, Any]:
     """Every document of ten designs and of a run of 12 designs over 3 generations."""
     study = published_study()
-    draw = random.Random(1)
-    grids = [[draw.randrange(levels) for levels in study.space.levels] for _ in range(10)]
-    designs = [study.space.from_indices(grid).to_dict() for grid in grids]
-    evaluations = [study.evaluate(design).to_dict() for design in designs]
+    evaluations = [study.evaluate(design).to_dict() for design in random_designs(study, 10)]
     with tempfile.TemporaryDirectory() as folder:
         run = codesign.optimize(
             study, out=Path(folder) / "run", population=12, generations=3, seed=1, workers=1, cache=None
@@ -121,6 +163,8 @@ def main() -> None:
     sys.stderr.write(f"{Path(codesign.__file__).parent}, {Path(_core.__file__)}\n")
     if sys.argv[1] == "times":
         print(json.dumps(times()))
+    elif sys.argv[1] == "designs":
+        print(json.dumps(designs(int(sys.argv[2]))))
     else:
         Path(sys.argv[2]).write_text(json.dumps(results()))
 
