@@ -13,7 +13,6 @@
 #include "errors.hpp"
 #include "fem/kept_meshes.hpp"
 #include "fem/meshing/mesh_watch.hpp"
-#include "model_error.hpp"
 
 namespace codesign::fem {
 
@@ -79,17 +78,15 @@ MeshOptions pass_options(const PartCase& part, double seconds) {
 
 // Every load case by one factor, and which of them governs: the first where several are equal.
 void solve_cases(const PartCase& part, const StaticSystem& system, PartAnalysis& analysis) {
+  std::vector<std::vector<Load>> loads;
+  for (const LoadCase& load_case : part.cases) {
+    loads.push_back(load_case.loads);
+    analysis.case_names.push_back(load_case.name);
+  }
+  analysis.results = system.solve_all(loads, analysis.case_names);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < part.cases.size(); ++i) {
-    const LoadCase& load_case = part.cases[i];
-    try {
-      analysis.results.push_back(system.solve(load_case.loads));
-    } catch (const ModelError& error) {
-      if (part.cases.size() == 1) throw;
-      throw ModelError("load case '" + load_case.name + "': " + error.what());
-    }
-    analysis.case_names.push_back(load_case.name);
-    const double reserve = analysis.results[i].safety_factor / load_case.least_safety_factor;
+    const double reserve = analysis.results[i].safety_factor / part.cases[i].least_safety_factor;
     if (reserve < least) {
       least = reserve;
       analysis.governing = i;
@@ -148,8 +145,8 @@ StaticSystem make_system(const PartCase& part, const std::shared_ptr<const TetMe
   if (kept) {
     FactorLimits limits = factor_limits(settings);
     limits.operations *= kDesignsServed;
-    elements = kept_elements(kept, *part.stretch, part.material, constrain(*kept, part.supports),
-                             limits);
+    elements =
+        kept_elements(kept, *part.stretch, part.material, constrain(*kept, part.supports), limits);
   }
   return {mesh, part.material, part.supports, settings, part.masses, std::move(elements)};
 }

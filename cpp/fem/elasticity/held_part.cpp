@@ -10,16 +10,16 @@ namespace codesign::fem {
 
 namespace {
 
-void read_forces(const HeldPart& part, const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
-                 StaticResult& r) {
+void read_forces(const HeldPart& part, const Response& response, StaticResult& r) {
   r.reactions = Points::Zero(part.mesh.nodes.rows(), 3);
   r.support_forces = Points::Zero(static_cast<Eigen::Index>(part.supports.size()), 3);
   for (std::size_t d = 0; d < part.constraints.support.size(); ++d) {
     const int support = part.constraints.support[d];
     if (support < 0) continue;
     const Eigen::Index i = static_cast<Eigen::Index>(d);
-    r.reactions(i / 3, i % 3) = internal[i] - load[i];
-    r.support_forces(support, i % 3) += internal[i] - load[i];
+    const double force = response.internal[i] - response.load[i];
+    r.reactions(i / 3, i % 3) = force;
+    r.support_forces(support, i % 3) += force;
   }
 }
 
@@ -37,14 +37,28 @@ PeakStress read_peak(const HeldPart& part, const PointStresses& points, const Ex
   return inside.largest.value > peak.value ? inside.largest : peak;
 }
 
-void read_stress(const HeldPart& part, const std::vector<int>& loaded, const Eigen::VectorXd& u,
-                 StaticResult& r) {
-  const PointStresses points = point_stresses(part.mesh, part.material, u);
-  r.stress = recover_stress(part.mesh, part.places, points);
+// Of all responses, recovered together.
+std::vector<Stresses> nodal_stresses(const HeldPart& part,
+                                     const std::vector<PointStresses>& points) {
+  if (points.size() == 1) return {recover_stress(part.mesh, part.places, points[0])};
+  const auto count = static_cast<Eigen::Index>(points.size());
+  StressFields side_by_side(points[0].stress.rows(), 6 * count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    side_by_side.middleCols<6>(6 * i) = points[static_cast<std::size_t>(i)].stress;
+  const StressFields recovered = recover_fields(part.mesh, part.places, side_by_side);
+  std::vector<Stresses> stresses;
+  for (Eigen::Index i = 0; i < count; ++i) stresses.emplace_back(recovered.middleCols<6>(6 * i));
+  return stresses;
+}
+
+void read_stress(const HeldPart& part, const Response& response, const PointStresses& points,
+                 const Stresses& recovered, StaticResult& r) {
+  const Eigen::VectorXd& u = response.displacement;
+  r.stress = recovered;
   const CornerStress corners = corner_stress(part.mesh, part.places, part.material, u);
   r.stress(corners.nodes, Eigen::all) = corners.stress;
   r.von_mises = von_mises(r.stress);
-  const ExclusionZone zone = exclusion_zone(part, loaded);
+  const ExclusionZone zone = exclusion_zone(part, response.loaded);
   const PeakStress peak = read_peak(part, points, zone, r);
   const PeakStress hidden = stress_left_out(part.mesh, r.stress, zone);
   if (hidden.triangle >= 0) {
@@ -73,17 +87,24 @@ ExclusionZone exclusion_zone(const HeldPart& part, const std::vector<int>& loade
           {part.settings.exclusion, part.settings.exclusion_distance}};
 }
 
-StaticResult read_result(const HeldPart& part, const std::vector<int>& loaded,
-                         const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
-                         const Eigen::VectorXd& u) {
-  StaticResult r;
-  r.displacement = Eigen::Map<const Points>(u.data(), part.mesh.nodes.rows(), 3);
-  r.max_displacement = r.displacement.rowwise().norm().maxCoeff();
-  r.work = part.settings.copies * load.dot(u);
-  r.strain_energy = 0.5 * part.settings.copies * internal.dot(u);
-  read_forces(part, load, internal, r);
-  read_stress(part, loaded, u, r);
-  return r;
+std::vector<StaticResult> read_results(const HeldPart& part,
+                                       const std::vector<Response>& responses) {
+  std::vector<PointStresses> points;
+  for (const Response& response : responses)
+    points.push_back(point_stresses(part.mesh, part.material, response.displacement));
+  const std::vector<Stresses> stresses = nodal_stresses(part, points);
+  std::vector<StaticResult> results(responses.size());
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    const Eigen::VectorXd& u = responses[i].displacement;
+    StaticResult& r = results[i];
+    r.displacement = Eigen::Map<const Points>(u.data(), part.mesh.nodes.rows(), 3);
+    r.max_displacement = r.displacement.rowwise().norm().maxCoeff();
+    r.work = part.settings.copies * responses[i].load.dot(u);
+    r.strain_energy = 0.5 * part.settings.copies * responses[i].internal.dot(u);
+    read_forces(part, responses[i], r);
+    read_stress(part, responses[i], points[i], stresses[i], r);
+  }
+  return results;
 }
 
 }  // namespace codesign::fem

@@ -28,11 +28,16 @@ struct HeldPart {
 // Where the peak stress is not read if these triangles are loaded.
 ExclusionZone exclusion_zone(const HeldPart& part, const std::vector<int>& loaded);
 
-// What a displacement u (3 n) says: forces, stress, peak, error. load and internal are the nodal
-// forces (3 n, N) from outside and of the stress. Throws ModelError if the exclusion leaves no
-// place.
-StaticResult read_result(const HeldPart& part, const std::vector<int>& loaded,
-                         const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
-                         const Eigen::VectorXd& u);
+// What a load case does to the nodes: forces from outside and of the stress (3 n, N), displacement
+// (3 n, m); loaded: boundary triangles.
+struct Response {
+  std::vector<int> loaded;
+  Eigen::VectorXd load, internal, displacement;
+};
+
+// What displacements say: forces, stress, peak, error; the fits of the recovery serve all of them.
+// Throws ModelError if the exclusion leaves no place.
+std::vector<StaticResult> read_results(const HeldPart& part,
+                                       const std::vector<Response>& responses);
 
 }  // namespace codesign::fem

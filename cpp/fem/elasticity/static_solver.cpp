@@ -66,6 +66,16 @@ FactorLimits factor_limits(const StaticSettings& settings) {
   return {settings.memory_limit, settings.solutions * kDirectOperations};
 }
 
+namespace {
+
+struct Solution {
+  Response response;
+  double residual = 0.0;
+  int iterations = 0;
+};
+
+}  // namespace
+
 struct StaticSystem::Data {
   std::shared_ptr<const HeldPart> part;
   int equations = 0;
@@ -140,6 +150,18 @@ struct StaticSystem::Data {
     throw SolverError(text.str());
   }
 
+  // Throws ModelError for loads without effect, SolverError as displace does.
+  Solution solution(const std::vector<Load>& given) const {
+    const std::vector<Load> loads = with_masses(given, part->masses);
+    Solution s;
+    s.response.loaded = loaded_triangles(part->mesh, loads);
+    s.response.load = load_vector(part->mesh, part->material, loads);
+    require_effect(loads, s.response.load);
+    s.response.displacement =
+        displace(s.response.load, s.response.internal, s.residual, s.iterations);
+    return s;
+  }
+
   // A load that no free component feels, or loads that cancel, would silently do nothing.
   void require_effect(const std::vector<Load>& loads, const Eigen::VectorXd& total) const {
     constexpr double kRoundOff = 1e-12;
@@ -211,21 +233,32 @@ StaticSystem& StaticSystem::operator=(StaticSystem&&) noexcept = default;
 
 const TetMesh& StaticSystem::mesh() const { return data_->part->mesh; }
 
-StaticResult StaticSystem::solve(const std::vector<Load>& given) const {
+StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
+  return std::move(solve_all({loads}, {""}).front());
+}
+
+std::vector<StaticResult> StaticSystem::solve_all(const std::vector<std::vector<Load>>& cases,
+                                                  const std::vector<std::string>& names) const {
   const Data& d = *data_;
-  const HeldPart& part = *d.part;
-  const std::vector<Load> loads = with_masses(given, part.masses);
-  const Eigen::VectorXd load = load_vector(part.mesh, part.material, loads);
-  d.require_effect(loads, load);
-  Eigen::VectorXd internal;
-  double residual = 0.0;
-  int iterations = 0;
-  const Eigen::VectorXd u = d.displace(load, internal, residual, iterations);
-  StaticResult r = read_result(part, loaded_triangles(part.mesh, loads), load, internal, u);
-  r.residual = residual;
-  r.iterations = iterations;
-  r.equations = d.equations;
-  return r;
+  std::vector<Response> responses;
+  std::vector<double> residuals;
+  std::vector<int> iterations;
+  for (std::size_t i = 0; i < cases.size(); ++i) try {
+      Solution solution = d.solution(cases[i]);
+      responses.push_back(std::move(solution.response));
+      residuals.push_back(solution.residual);
+      iterations.push_back(solution.iterations);
+    } catch (const ModelError& error) {
+      if (cases.size() == 1) throw;
+      throw ModelError("load case '" + names[i] + "': " + error.what());
+    }
+  std::vector<StaticResult> results = read_results(*d.part, responses);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i].residual = residuals[i];
+    results[i].iterations = iterations[i];
+    results[i].equations = d.equations;
+  }
+  return results;
 }
 
 UnitResponses StaticSystem::unit_responses(const std::vector<std::vector<Load>>& units) const {
@@ -267,15 +300,8 @@ NaturalModes StaticSystem::natural_modes(int count) const {
 }
 
 Points StaticSystem::displacement(const std::vector<Load>& given) const {
-  const Data& d = *data_;
-  const std::vector<Load> loads = with_masses(given, d.part->masses);
-  const Eigen::VectorXd load = load_vector(d.part->mesh, d.part->material, loads);
-  d.require_effect(loads, load);
-  Eigen::VectorXd internal;
-  double residual = 0.0;
-  int iterations = 0;
-  const Eigen::VectorXd u = d.displace(load, internal, residual, iterations);
-  return Eigen::Map<const Points>(u.data(), d.part->mesh.nodes.rows(), 3);
+  const Eigen::VectorXd u = data_->solution(given).response.displacement;
+  return Eigen::Map<const Points>(u.data(), data_->part->mesh.nodes.rows(), 3);
 }
 
 BucklingModes StaticSystem::buckling_modes(const Points& displacement, int count) const {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fem/boundary/loads.hpp"
@@ -112,6 +113,11 @@ class StaticSystem {
   // Throws SolverError if the residual misses the tolerance, ModelError if nothing acts on the part
   // or a load acts on held components only.
   StaticResult solve(const std::vector<Load>& loads) const;
+
+  // Several load cases, each with the digits that it has alone, for less than one by one. Errors of
+  // several say which of the names is meant.
+  std::vector<StaticResult> solve_all(const std::vector<std::vector<Load>>& cases,
+                                      const std::vector<std::string>& names) const;
 
   // The answers to unit loads (any number of loads each), see unit_responses.hpp; remote masses are
   // not in them, and a load of nothing is no error here. Throws SolverError as solve does,

@@ -49,9 +49,9 @@ StaticResult UnitResponses::at(const Eigen::VectorXd& factors) const {
   if (factors.size() != units()) {
     throw std::invalid_argument("one instant needs " + std::to_string(units()) + " factors");
   }
-  const Eigen::VectorXd u = displacement_ * factors, load = load_ * factors;
+  const Eigen::VectorXd u = displacement_ * factors;
   const Eigen::VectorXd internal = internal_forces(part_->mesh, part_->material, u).sum;
-  return read_result(*part_, loaded_, load, internal, u);
+  return std::move(read_results(*part_, {{loaded_, load_ * factors, internal, u}}).front());
 }
 
 }  // namespace codesign::fem

@@ -30,11 +30,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using Basis = Eigen::Matrix<double, 10, 1>;
 
-// Columns: the stress components of one field, or of any number of fields side by side.
-template <int Columns>
-using Coefficients = Eigen::Matrix<double, 10, Columns>;
-template <int Columns>
-using Fields = Eigen::Matrix<double, Eigen::Dynamic, Columns, Eigen::RowMajor>;
+using Coefficients = Eigen::Matrix<double, 10, 6>;  // of one field, a column each component
+using FieldsView = Eigen::Ref<const StressFields>;  // any number of fields side by side
 
 Basis quadratic_basis(const Eigen::Vector3d& r) {
   Basis p;
@@ -151,9 +148,8 @@ std::array<BalanceTerm, 3> balance_terms(int condition) {
 // stand in the tensor: the result turns with the axes), with one body force over the whole patch:
 // the derivative of div σ vanishes, nine conditions on the quadratic terms of a field. At edges of
 // the body, where a fit sees one side only, they replace what it does not see.
-template <int Columns>
 void balance(const Eigen::LDLT<Eigen::Matrix<double, 10, 10>>& factor,
-             Coefficients<Columns>& coefficients) {
+             std::vector<Coefficients>& fields) {
   static const std::array<std::array<BalanceTerm, 3>, 9> terms = [] {
     std::array<std::array<BalanceTerm, 3>, 9> all;
     for (int c = 0; c < 9; ++c) all[at(c)] = balance_terms(c);
@@ -177,67 +173,78 @@ void balance(const Eigen::LDLT<Eigen::Matrix<double, 10, 10>>& factor,
     }
   }
   const Eigen::LDLT<Eigen::Matrix<double, 9, 9>> solver(conditions);
-  for (Eigen::Index first = 0; first < coefficients.cols(); first += 6) {  // field by field
+  for (Coefficients& coefficients : fields) {
     Eigen::Matrix<double, 9, 1> missed = Eigen::Matrix<double, 9, 1>::Zero();
     for (int c = 0; c < 9; ++c) {
       for (const BalanceTerm& t : terms[at(c)]) {
-        missed[c] += t.factor * coefficients(t.quadratic, first + t.component);
+        missed[c] += t.factor * coefficients(t.quadratic, t.component);
       }
     }
     const Eigen::Matrix<double, 9, 1> multipliers = solver.solve(missed);
     for (int c = 0; c < 9; ++c) {
       for (const BalanceTerm& t : terms[at(c)]) {
-        coefficients.col(first + t.component) -=
+        coefficients.col(t.component) -=
             t.factor * multipliers[c] / weight(t.component) * moves.col(t.quadratic - 4);
       }
     }
   }
 }
 
-// A quadratic stress around a corner node.
-template <int Columns>
+// Quadratic stresses around a corner node.
 struct PatchField {
   Eigen::Vector3d origin;
-  double radius;
-  bool balanced;  // fits fulfill equilibrium, see balance()
-  Coefficients<Columns> coefficients;
-  double least_pivot;  // over the sum of the weights
+  double radius = 0.0;
+  bool balanced = false;  // fits fulfill equilibrium, see balance()
+  std::vector<Coefficients> coefficients = {};
+  double least_pivot = 0.0;  // over the sum of the weights
 
-  Eigen::Matrix<double, 1, Columns> at(const Eigen::Vector3d& x) const {
-    return quadratic_basis((x - origin) / radius).transpose() * coefficients;
+  Eigen::Matrix<double, 1, 6> at(const Eigen::Vector3d& x, std::size_t field) const {
+    return quadratic_basis((x - origin) / radius).transpose() * coefficients[field];
   }
 };
 
-// Weighted least-squares fit around the field's origin, coordinates divided by its radius.
-template <int Columns>
-void fit(const std::vector<int>& patch, const Points& x, const Fields<Columns>& stress,
-         double exponent, PatchField<Columns>& field) {
+double weight(double squared_distance, double exponent) {
+  const double s = squared_distance + kCore;
+  return exponent == kExponent ? 1.0 / (s * std::sqrt(s)) : std::pow(s, -0.5 * exponent);
+}
+
+// Weighted least-squares fits around the field's origin, coordinates divided by its radius.
+void fit(const std::vector<int>& patch, const Points& x, const FieldsView& stress, double exponent,
+         PatchField& field) {
   Eigen::Matrix<double, 10, 10> normal = Eigen::Matrix<double, 10, 10>::Zero();
-  Coefficients<Columns> right = Coefficients<Columns>::Zero(10, stress.cols());
+  std::vector<Coefficients>& right = field.coefficients;
+  right.assign(static_cast<std::size_t>(stress.cols() / 6), Coefficients::Zero());
   double total = 0.0;
   for (const int e : patch) {
     for (int q = 4 * e; q < 4 * e + 4; ++q) {
       const Eigen::Vector3d r = (x.row(q).transpose() - field.origin) / field.radius;
-      const double weight = std::pow(r.squaredNorm() + kCore, -0.5 * exponent);
+      const double w = weight(r.squaredNorm(), exponent);
       const Basis p = quadratic_basis(r);
-      const Basis wp = weight * p;
-      total += weight;
+      const Basis wp = w * p;
+      total += w;
       normal.noalias() += wp * p.transpose();
-      right.noalias() += wp * stress.row(q);
+      for (std::size_t f = 0; f < right.size(); ++f)
+        right[f].noalias() += wp * stress.block<1, 6>(q, 6 * static_cast<Eigen::Index>(f));
     }
   }
   if (patch.size() < kMinPatch) {  // a mesh of a few elements: the quadratic terms stay zero
-    field.coefficients.setZero(10, stress.cols());
-    field.coefficients.template topRows<4>() =
-        normal.topLeftCorner<4, 4>().ldlt().solve(right.template topRows<4>());
+    const Eigen::LDLT<Eigen::Matrix4d> factor(normal.topLeftCorner<4, 4>());
+    for (Coefficients& coefficients : right) {
+      const Eigen::Matrix<double, 4, 6> linear = coefficients.topRows<4>();
+      coefficients.setZero();
+      coefficients.topRows<4>() = factor.solve(linear);
+    }
     field.least_pivot = 1.0;
     return;
   }
   normal.diagonal().segment<3>(4).array() += kRidge * total;
   normal.diagonal().tail<3>().array() += 0.5 * kRidge * total;  // the same in turned axes
   const Eigen::LDLT<Eigen::Matrix<double, 10, 10>> factor(normal);
-  field.coefficients = factor.solve(right);
-  if (field.balanced) balance<Columns>(factor, field.coefficients);
+  for (Coefficients& coefficients : right) {
+    const Coefficients wanted = coefficients;
+    coefficients = factor.solve(wanted);
+  }
+  if (field.balanced) balance(factor, field.coefficients);
   field.least_pivot = factor.vectorD().minCoeff() / total;
 }
 
@@ -252,35 +259,37 @@ double patch_radius(const TetMesh& mesh, const std::vector<int>& patch,
   return radius;
 }
 
-// The field around a corner, on a patch that determines it.
-template <int Columns>
-PatchField<Columns> fit_around(const TetMesh& mesh, int corner, BodyPlace place,
-                               PatchFinder& finder, const Points& x,
-                               const Fields<Columns>& stress) {
+// The fields around a corner, on a patch that determines them.
+PatchField fit_around(const TetMesh& mesh, int corner, BodyPlace place, PatchFinder& finder,
+                      const Points& x, const FieldsView& stress) {
   const std::vector<int>& patch = finder.around(corner);
-  const bool balanced = place == BodyPlace::edge;
-  PatchField<Columns> field{mesh.nodes.row(corner).transpose(), 0.0, balanced, {}, 0.0};
+  PatchField field{mesh.nodes.row(corner).transpose()};
+  field.balanced = place == BodyPlace::edge;
   do {
     field.radius = patch_radius(mesh, patch, field.origin);
-    fit<Columns>(patch, x, stress, kExponent, field);
+    fit(patch, x, stress, kExponent, field);
   } while (field.least_pivot < kLeastPivot && finder.grow_once());
   return field;
 }
 
-template <int Columns>
-Fields<Columns> recover(const TetMesh& mesh, const std::vector<BodyPlace>& places,
-                        const Fields<Columns>& stress) {
+}  // namespace
+
+StressFields recover_fields(const TetMesh& mesh, const std::vector<BodyPlace>& places,
+                            const Eigen::Ref<const StressFields>& points) {
   const Points x = stress_points(mesh);
   PatchFinder finder(mesh);
   const int nodes = static_cast<int>(mesh.nodes.rows());
-  Fields<Columns> sum = Fields<Columns>::Zero(nodes, stress.cols());
+  const auto fields = static_cast<std::size_t>(points.cols() / 6);
+  StressFields sum = StressFields::Zero(nodes, points.cols());
+  const auto of_field = [&](int node, std::size_t f) {
+    return sum.block<1, 6>(node, 6 * static_cast<Eigen::Index>(f));
+  };
   std::vector<int> count(at(nodes), 0), seen_from(at(nodes), -1);
   for (int v = 0; v < nodes; ++v) {
     check_interrupt();
     if (!finder.is_corner(v)) continue;
-    const PatchField<Columns> field =
-        fit_around<Columns>(mesh, v, places[at(v)], finder, x, stress);
-    sum.row(v) += field.coefficients.row(0);
+    const PatchField field = fit_around(mesh, v, places[at(v)], finder, x, points);
+    for (std::size_t f = 0; f < fields; ++f) of_field(v, f) += field.coefficients[f].row(0);
     ++count[at(v)];
     for (std::size_t i = 0; i < finder.core(); ++i) {
       for (int k = 0; k < 6; ++k) {
@@ -289,7 +298,8 @@ Fields<Columns> recover(const TetMesh& mesh, const std::vector<BodyPlace>& place
             mesh.tets(e, kTetEdges[k][0]) == v || mesh.tets(e, kTetEdges[k][1]) == v;
         if (!on_edge || seen_from[at(middle)] == v) continue;
         seen_from[at(middle)] = v;
-        sum.row(middle) += field.at(mesh.nodes.row(middle).transpose());
+        const Eigen::Vector3d place = mesh.nodes.row(middle).transpose();
+        for (std::size_t f = 0; f < fields; ++f) of_field(middle, f) += field.at(place, f);
         ++count[at(middle)];
       }
     }
@@ -300,16 +310,9 @@ Fields<Columns> recover(const TetMesh& mesh, const std::vector<BodyPlace>& place
   return sum;
 }
 
-}  // namespace
-
 Stresses recover_stress(const TetMesh& mesh, const std::vector<BodyPlace>& places,
                         const PointStresses& points) {
-  return recover<6>(mesh, places, points.stress);
-}
-
-StressFields recover_fields(const TetMesh& mesh, const std::vector<BodyPlace>& places,
-                            const StressFields& points) {
-  return recover<Eigen::Dynamic>(mesh, places, points);
+  return recover_fields(mesh, places, points.stress);
 }
 
 double recovery_spread(const TetMesh& mesh, const std::vector<BodyPlace>& places,
@@ -321,13 +324,13 @@ double recovery_spread(const TetMesh& mesh, const std::vector<BodyPlace>& places
   Eigen::Matrix<double, 6, 6> smooth = Eigen::Matrix<double, 6, 6>::Zero(), sharp = smooth;
   for (int k = 0; k < 3; ++k) {
     const int corner = mesh.boundary(triangle, k);
-    PatchField<6> field = fit_around<6>(mesh, corner, places[at(corner)], finder, x, points.stress);
+    PatchField field = fit_around(mesh, corner, places[at(corner)], finder, x, points.stress);
     for (auto& [stress, exponent] :
          {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
-      fit<6>(finder.patch(), x, points.stress, exponent, field);
-      stress->row(k) += field.at(nodes.col(k));
-      stress->row(3 + k) += 0.5 * field.at(nodes.col(3 + k));
-      stress->row(3 + (k + 2) % 3) += 0.5 * field.at(nodes.col(3 + (k + 2) % 3));
+      fit(finder.patch(), x, points.stress, exponent, field);
+      stress->row(k) += field.at(nodes.col(k), 0);
+      stress->row(3 + k) += 0.5 * field.at(nodes.col(3 + k), 0);
+      stress->row(3 + (k + 2) % 3) += 0.5 * field.at(nodes.col(3 + (k + 2) % 3), 0);
     }
   }
   const Eigen::Matrix<double, 6, 1> values = tri6_values(reference);
@@ -343,11 +346,11 @@ double recovery_spread_inside(const TetMesh& mesh, const std::vector<BodyPlace>&
   Voigt smooth = Voigt::Zero(), sharp = smooth;
   for (int k = 0; k < 4; ++k) {
     const int corner = mesh.tets(element, k);
-    PatchField<6> field = fit_around<6>(mesh, corner, places[at(corner)], finder, x, points.stress);
+    PatchField field = fit_around(mesh, corner, places[at(corner)], finder, x, points.stress);
     for (auto& [stress, exponent] :
          {std::pair(&smooth, kSmoothExponent), {&sharp, kSharpExponent}}) {
-      fit<6>(finder.patch(), x, points.stress, exponent, field);
-      *stress += 0.25 * field.at(position).transpose();
+      fit(finder.patch(), x, points.stress, exponent, field);
+      *stress += 0.25 * field.at(position, 0).transpose();
     }
   }
   return std::abs(von_mises(sharp) - von_mises(smooth));

@@ -25,11 +25,11 @@ namespace codesign::fem {
 Stresses recover_stress(const TetMesh& mesh, const std::vector<BodyPlace>& places,
                         const PointStresses& points);
 
-// The same of any number of fields side by side, six columns each: at the points of PointStresses,
-// and recovered at the nodes.
+// The same, to the last digit, of any number of fields side by side, six columns each: at the
+// points of PointStresses, and recovered at the nodes.
 using StressFields = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 StressFields recover_fields(const TetMesh& mesh, const std::vector<BodyPlace>& places,
-                            const StressFields& points);
+                            const Eigen::Ref<const StressFields>& points);
 
 // How much the von Mises stress (Pa) at a point of a boundary face depends on the recovery: the
 // difference between a fit that trusts near points more and one that smooths more.
