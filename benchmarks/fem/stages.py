@@ -2,7 +2,7 @@
 
   python benchmarks/fem/stages.py [--study ironcub_paper] [--designs 50] [--seed 1]
 
-Evaluates random designs one after another in one process with one thread and no cache. Stages of Python are timed; what
+Evaluates random designs one after another in one process with one thread and no cache of results. Stages of Python are timed; what
 the compiled core does inside of them is divided by samples of `perf` (Linux, package linux-perf): a sample belongs to
 the innermost function that a stage names. Start-up is that of new processes.
 """
@@ -25,7 +25,10 @@ from pathlib import Path
 from typing import Any
 
 import codesign
+from codesign import _core
 from codesign.chain import chain
+from codesign.execution.pool import kept_mib
+from codesign.units import MEBIBYTE
 
 STAGES = {  # of the compiled core: words, functions whose samples count, unless a function inside of them is named too
     "surface: simplify, check": r"prepare_surface|simplify_\w+|smooth_surface",
@@ -34,9 +37,9 @@ STAGES = {  # of the compiled core: words, functions whose samples count, unless
     "mesh: curve, number, the rest": r"tetrahedralize|curve_edges|to_quadratic|make_tet_mesh",
     "ordering": r"order_nodes|fill_reducing_order",
     "assembly": r"assemble_stiffness|NodePattern|load_vector",
-    "factorization": r"CholeskyFactor::CholeskyFactor",
-    "solution": r"CholeskyFactor::solve|StaticSystem::Data::displace",
-    "recovery: stress, peak, error": r"read_result|recover\w+|StaticSystem::solve|exclusion_zone",
+    "factorization": r"CholeskyFactor::CholeskyFactor|Substructure::Substructure|CondensedFactor::CondensedFactor",
+    "solution": r"CholeskyFactor::solve\w*|StaticSystem::Data::displace|CondensedFactor::solve",
+    "recovery: stress, peak, error": r"read_results?|recover\w+|StaticSystem::solve\w*|exclusion_zone",
     "flight": r"simulate_flights?|FlightModel|read_urdf|reduce_urdf",
     "other work on parts": r"analyze_part",
 }
@@ -75,6 +78,8 @@ def evaluate(given: argparse.Namespace) -> None:
     """The work itself: prints CPU seconds of the timed functions and of everything."""
     study = codesign.load_study(given.study)
     first, *others = designs(study, given.designs + 1, given.seed)
+    keeps = kept_mib(2, study.config.execution.memory_limit_mib)  # as one of two workers of a run
+    _core.limit_kept_meshes(keeps * MEBIBYTE)
     study.evaluate(first)  # imports and first allocations
     spent: dict[str, float] = {}
     for name in TIMED:

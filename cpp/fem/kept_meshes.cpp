@@ -1,5 +1,6 @@
 #include "fem/kept_meshes.hpp"
 
+#include <cstddef>
 #include <list>
 #include <mutex>
 #include <string>
@@ -70,22 +71,27 @@ double mesh_bytes(const TetMesh& mesh) {
          sizeof(int) * static_cast<double>(mesh.tets.size() + mesh.boundary.size());
 }
 
+// A factor with its worth: what it saves for each byte, in multiply-adds, above what the last
+// forgotten one was worth when it went. So the dear and the lately used stay (GreedyDual-Size, Cao
+// and Irani 1997).
+struct Factor {
+  std::string key;
+  KeptElements elements;
+  double worth = 0.0;
+};
+
 struct Entry {
   std::string key;
   std::shared_ptr<const TetMesh> mesh;
-  std::vector<std::pair<std::string, KeptElements>> elements;
+  std::vector<Factor> factors;
 
-  double factor_bytes() const {
-    double sum = 0.0;
-    for (const auto& [key_of, kept] : elements) sum += kept.rest->bytes();
-    return sum;
-  }
-  double own_bytes() const { return mesh_bytes(*mesh) + static_cast<double>(key.size()); }
+  double bytes() const { return mesh_bytes(*mesh) + static_cast<double>(key.size()); }
 };
 
 struct Store {
   std::mutex mutex;
   double limit = 256e6;      // bytes
+  double forgotten = 0.0;    // worth of the last forgotten factor
   std::list<Entry> entries;  // the last used first
 
   Entry* find(const std::string& key) {
@@ -103,17 +109,40 @@ struct Store {
     return nullptr;
   }
 
-  void shrink() {
+  void use(Factor& factor) const {
+    const Substructure& rest = *factor.elements.rest;
+    factor.worth = forgotten + rest.operations() / rest.bytes();
+  }
+
+  double bytes() const {
     double sum = 0.0;
-    for (const Entry& entry : entries) sum += entry.own_bytes() + entry.factor_bytes();
-    for (auto entry = entries.rbegin(); entry != entries.rend() && sum > limit; ++entry) {
-      sum -= entry->factor_bytes();
-      entry->elements.clear();
+    for (const Entry& entry : entries) {
+      sum += entry.bytes();
+      for (const Factor& factor : entry.factors) sum += factor.elements.rest->bytes();
     }
-    while (entries.size() > 1 && sum > limit) {
-      sum -= entries.back().own_bytes();
-      entries.pop_back();
+    return sum;
+  }
+
+  // Whether there was a factor to forget.
+  bool forget_least() {
+    Entry* owner = nullptr;
+    std::size_t least = 0;
+    for (Entry& entry : entries)
+      for (std::size_t i = 0; i < entry.factors.size(); ++i)
+        if (!owner || entry.factors[i].worth < owner->factors[least].worth) {
+          owner = &entry;
+          least = i;
+        }
+    if (!owner) return false;
+    forgotten = owner->factors[least].worth;
+    owner->factors.erase(owner->factors.begin() + static_cast<std::ptrdiff_t>(least));
+    return true;
+  }
+
+  void shrink() {
+    while (bytes() > limit && forget_least()) {
     }
+    while (bytes() > limit && entries.size() > 1) entries.pop_back();
   }
 };
 
@@ -159,9 +188,12 @@ std::optional<KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& 
   const std::string key = elements_key(stretch, material, constraints);
   {
     const std::lock_guard<std::mutex> lock(store().mutex);
-    if (const Entry* entry = store().find(mesh.get()))
-      for (const auto& [other, elements] : entry->elements)
-        if (other == key) return elements;
+    if (Entry* entry = store().find(mesh.get()))
+      for (Factor& factor : entry->factors)
+        if (factor.key == key) {
+          store().use(factor);
+          return factor.elements;
+        }
   }
   KeptElements elements;
   try {
@@ -171,7 +203,8 @@ std::optional<KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& 
   }
   const std::lock_guard<std::mutex> lock(store().mutex);
   if (Entry* entry = store().find(mesh.get())) {
-    entry->elements.emplace_back(key, elements);
+    entry->factors.push_back({key, elements});
+    store().use(entry->factors.back());
     store().shrink();
   }
   return elements;

@@ -17,8 +17,9 @@
 // never depends on what is kept, only its time does. Safe for several threads.
 namespace codesign::fem {
 
-// What may be kept in all, 256 MB at first; the longest unused goes, factors before meshes. With 0
-// nothing stays but the last mesh.
+// What may be kept in all, 256 MB at first. Factors go before meshes: first those that save least
+// for their size, as long as they are not used; of the meshes the longest unused. With 0 nothing
+// stays but the last mesh.
 void limit_kept_meshes(double bytes);
 
 // Whether there was anything to forget.

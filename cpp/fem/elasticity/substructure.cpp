@@ -130,6 +130,8 @@ double Substructure::bytes() const {
   return sizeof(double) * (factor_->nonzeros() + dense) + sizeof(int) * indices;
 }
 
+double Substructure::operations() const { return pattern_.supernodes.operations; }
+
 Substructure::Condensed Substructure::condense(const Eigen::VectorXd& load) const {
   Eigen::VectorXd forces = gather(pattern_, load);
   forces(equations_).setZero();

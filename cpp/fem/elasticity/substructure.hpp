@@ -28,7 +28,8 @@ class Substructure {
   // (k, k) N/m, of the free components of the shared nodes, in their order.
   const Eigen::MatrixXd& stiffness() const { return stiffness_; }
 
-  double bytes() const;  // that it keeps
+  double bytes() const;       // that it keeps
+  double operations() const;  // that its factor took, multiply-adds
 
   // Forces on inner nodes, half eliminated, and what they do to the shared ones.
   struct Condensed {
