@@ -2,9 +2,9 @@
 
   python benchmarks/fem/stages.py [--study ironcub_paper] [--designs 50] [--seed 1]
 
-Evaluates random designs one after another in one process with one thread and no cache of results. Stages of Python are timed; what
-the compiled core does inside of them is divided by samples of `perf` (Linux, package linux-perf): a sample belongs to
-the innermost function that a stage names. Start-up is that of new processes.
+Evaluates random designs one after another in one process with one thread and no cache of results. Stages of Python
+are timed; what the compiled core does inside of them is divided by samples of `perf` (Linux, package linux-perf): a
+sample belongs to the innermost function that a stage names. Start-up is that of new processes.
 """
 
 from __future__ import annotations
@@ -78,8 +78,7 @@ def evaluate(given: argparse.Namespace) -> None:
     """The work itself: prints CPU seconds of the timed functions and of everything."""
     study = codesign.load_study(given.study)
     first, *others = designs(study, given.designs + 1, given.seed)
-    keeps = kept_mib(2, study.config.execution.memory_limit_mib)  # as one of two workers of a run
-    _core.limit_kept_meshes(keeps * MEBIBYTE)
+    _core.limit_kept_meshes(kept_mib(2) * MEBIBYTE)  # as one of two workers of a run
     study.evaluate(first)  # imports and first allocations
     spent: dict[str, float] = {}
     for name in TIMED:

@@ -116,7 +116,7 @@ def designs(count: int) -> dict[str, float]:
     """
     study = published_study()
     thetas = random_designs(study, count)
-    worker_keeps(study)
+    worker_keeps()
     seconds: dict[str, float] = {}
     for name in study.build_parts(thetas[0]):
         forget()
@@ -133,11 +133,11 @@ def _analyzed(part: Any, settings: Any) -> None:
     find("analyze_part")(find("part_case")(part, settings))
 
 
-def worker_keeps(study: codesign.Study) -> None:
+def worker_keeps() -> None:
     """What a worker of a run may keep of meshes and factors, where a revision keeps any."""
     if hasattr(_core, "limit_kept_meshes"):
         pool = importlib.import_module("codesign.execution.pool")
-        _core.limit_kept_meshes(pool.kept_mib(2, study.config.execution.memory_limit_mib) * 2.0**20)
+        _core.limit_kept_meshes(pool.kept_mib(2) * 2.0**20)
 
 
 def forget() -> None:

@@ -124,13 +124,13 @@ class _Worker:
         return f"pid {self.process.pid}"
 
 
-def kept_mib(workers: int, memory_mib: int) -> int:
-    """What each of some workers may keep of meshes and factors for later designs [MiB].
+def kept_mib(workers: int) -> int:
+    """What each of some workers may keep of meshes and factors for later designs [MiB], beside its memory limit.
 
-    A quarter of the machine's memory in all, of one worker 1.5 GiB and a third of its limit (0: none) at the most.
+    A quarter of the machine's memory in all, of one worker 4 GiB at the most.
     """
     machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // int(MEBIBYTE)
-    return min(1536, machine // (4 * workers), memory_mib // 3 if memory_mib else 1536)
+    return min(4096, machine // (4 * workers))
 
 
 class LocalPool:
@@ -145,7 +145,7 @@ class LocalPool:
         if workers < 1:
             raise ValueError(f"workers = {workers}: at least 1 is needed")
         self._study, self._limits, self._cache = study, limits or Limits(), str(cache or "")
-        self._kept_mib = kept_mib(workers, self._limits.memory_mib)
+        self._kept_mib = kept_mib(workers)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
         self._waiting: deque[Task] = deque()

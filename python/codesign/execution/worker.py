@@ -79,14 +79,22 @@ def _evaluated(study: Problem, task: dict[str, Any], cache: PartCache | None) ->
     return study.evaluate(task["design"], trajectory=task["trajectory"], cache=cache)
 
 
-def limit_memory(limit_mib: int) -> None:
-    """Lets the address space grow by at most `limit_mib` from here; a larger request fails as MemoryError."""
-    if limit_mib <= 0:
+def address_space() -> int:
+    """Bytes that this process has mapped; 0 where the kernel does not say."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123 - a file of the kernel
+            return int(file.read().split()[0]) * resource.getpagesize()
+    except (OSError, ValueError):
+        return 0
+
+
+def limit_memory(limit_mib: int, most: float) -> None:
+    """Lets the address space grow by at most `limit_mib` from here, to `most` bytes; more fails as MemoryError."""
+    here = address_space()
+    if limit_mib <= 0 or here == 0:
         return
     with contextlib.suppress(OSError, ValueError):
-        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123 - a file of the kernel
-            pages = int(file.read().split()[0])
-        ceiling = pages * resource.getpagesize() + limit_mib * MEBIBYTE
+        ceiling = int(min(here + limit_mib * MEBIBYTE, most))
         resource.setrlimit(resource.RLIMIT_AS, (ceiling, resource.getrlimit(resource.RLIMIT_AS)[1]))
 
 
@@ -126,10 +134,11 @@ def main(arguments: list[str]) -> None:
         write_message(answers, {"error": f"{type(error).__name__}: {error}"})
         return
     write_message(answers, {"ready": study.hash, "identity": study.identity.document()})
-    limit_memory(int(memory_mib))
+    most = address_space() + (int(memory_mib) + int(kept_mib)) * MEBIBYTE
     importlib.import_module("codesign._core").limit_kept_meshes(int(kept_mib) * MEBIBYTE)
     while True:
         task = tasks.get()
+        limit_memory(int(memory_mib), most)
         started = time.perf_counter()
         answer = evaluate(study, task, cache, int(memory_mib))
         write_message(answers, answer | {"seconds": time.perf_counter() - started})

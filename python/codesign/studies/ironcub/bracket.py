@@ -259,7 +259,7 @@ class JetpackBracket(Part):
 
     def _stretched_from(self, settings: StressSettings) -> tuple[JetpackBracket, _core.Stretch | None]:
         """The bracket that is meshed, and how its slab is stretched between creases and seat to be this one."""
-        if settings.accuracy != "optimization":
+        if settings.accuracy != "optimization" or settings.geometry == "full":
             return self, None
         start, before_seat = (8.0, SEAT_RADIUS + 2.0) if self._has_seat(settings.geometry) else (14.0, 0.0)
         zone = self.distance - before_seat - start

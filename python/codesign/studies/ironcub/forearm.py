@@ -256,7 +256,7 @@ class ForearmJetSupport(Part):
         """The support that is meshed, and how its rod is stretched to be this one."""
         start, end = ROD_X - RELIEF_X + 2.0, self.fillet + 3.0  # from the rod's ends
         zone = self.length - start - end
-        if settings.accuracy != "optimization" or zone < SHORTEST_ZONE:
+        if settings.accuracy != "optimization" or settings.geometry == "full" or zone < SHORTEST_ZONE:
             return self, None
         meshed = replace(self, length=start + meshed_length(zone, TYPICAL_ZONE) + end)
         rod_start, _ = self.rod_ends
