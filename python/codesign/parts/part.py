@@ -214,9 +214,12 @@ def _fem_surface(part: Part, geometry: str, segments: int, variant: tuple[tuple[
     return surface_mesh(_checked(part.fem_shape(geometry, **dict(variant)), resolution).tidied())
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=4096)
 def _moments(part: Part) -> Vector:
-    """Volume moments (10,) in mm of the true curved solid; a round part needs a third mesh, an imported one none."""
+    """Volume moments (10,) in mm of the true curved solid; a round part needs a third mesh, an imported one none.
+
+    Kept for a whole search: designs share parts, and ten numbers are little.
+    """
     if has_exact(part.shape()):
         return exact_moments(part.shape())
     coarse, fine = (_mesh_moments(part, refine) for refine in (1, 2))
