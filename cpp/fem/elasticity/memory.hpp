@@ -17,6 +17,7 @@ struct FactorLimits {
   double operations = 0.0;       // multiply-adds
 };
 
+// Whether stiffness and factor of a pattern are within the limits.
 bool factor_fits(const NodePattern& pattern, const FactorLimits& limits);
 
 // Throws MemoryLimitError if an analysis of `nodes` nodes needs more bytes than the limit.

@@ -230,9 +230,8 @@ void fit(const std::vector<int>& patch, const Points& x, const FieldsView& stres
   if (patch.size() < kMinPatch) {  // a mesh of a few elements: the quadratic terms stay zero
     const Eigen::LDLT<Eigen::Matrix4d> factor(normal.topLeftCorner<4, 4>());
     for (Coefficients& coefficients : right) {
-      const Eigen::Matrix<double, 4, 6> linear = coefficients.topRows<4>();
-      coefficients.setZero();
-      coefficients.topRows<4>() = factor.solve(linear);
+      coefficients.topRows<4>() = factor.solve(coefficients.topRows<4>()).eval();
+      coefficients.bottomRows<6>().setZero();
     }
     field.least_pivot = 1.0;
     return;
@@ -240,10 +239,7 @@ void fit(const std::vector<int>& patch, const Points& x, const FieldsView& stres
   normal.diagonal().segment<3>(4).array() += kRidge * total;
   normal.diagonal().tail<3>().array() += 0.5 * kRidge * total;  // the same in turned axes
   const Eigen::LDLT<Eigen::Matrix<double, 10, 10>> factor(normal);
-  for (Coefficients& coefficients : right) {
-    const Coefficients wanted = coefficients;
-    coefficients = factor.solve(wanted);
-  }
+  for (Coefficients& coefficients : right) coefficients = factor.solve(coefficients).eval();
   if (field.balanced) balance(factor, field.coefficients);
   field.least_pivot = factor.vectorD().minCoeff() / total;
 }
