@@ -58,9 +58,11 @@ std::string mesh_key(const SurfaceMesh& surface, const SizeField& size,
   return key.bytes();
 }
 
+// With the limits: a factor that they do not allow is none, whatever others have kept.
 std::string elements_key(const Stretch& stretch, const Material& material,
-                         const Constraints& constraints) {
+                         const Constraints& constraints, const FactorLimits& limits) {
   Key key;
+  key.add(limits.memory).add(limits.operations);
   key.add(stretch.origin).add(stretch.direction).add(stretch.from).add(stretch.to);
   key.add(material.young_modulus).add(material.poisson_ratio).add(constraints.fixed);
   return key.bytes();
@@ -83,7 +85,8 @@ struct Factor {
 struct Entry {
   std::string key;
   std::shared_ptr<const TetMesh> mesh;
-  std::vector<Factor> factors;
+  std::vector<std::shared_ptr<const SizePoints>> walls;  // alive, as the key has their addresses
+  std::vector<Factor> factors = {};
 
   double bytes() const { return mesh_bytes(*mesh) + static_cast<double>(key.size()); }
 };
@@ -176,7 +179,7 @@ std::shared_ptr<const TetMesh> kept_mesh(const SurfaceMesh& surface, const SizeF
   auto mesh = std::make_shared<const TetMesh>(tetrahedralize(surface, size, options));
   const std::lock_guard<std::mutex> lock(store().mutex);
   if (const Entry* entry = store().find(key)) return entry->mesh;  // another thread was faster
-  store().entries.push_front({std::move(key), mesh, {}});
+  store().entries.push_front({std::move(key), mesh, size.walls});
   store().shrink();
   return mesh;
 }
@@ -185,7 +188,7 @@ std::optional<KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& 
                                           const Stretch& stretch, const Material& material,
                                           const Constraints& constraints,
                                           const FactorLimits& limits) {
-  const std::string key = elements_key(stretch, material, constraints);
+  const std::string key = elements_key(stretch, material, constraints, limits);
   {
     const std::lock_guard<std::mutex> lock(store().mutex);
     if (Entry* entry = store().find(mesh.get()))

@@ -201,15 +201,18 @@ void try_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analys
   analysis.solve_seconds += seconds_since(meshed);
 }
 
-// Where memory runs out, what other parts have left goes first.
-void run_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) {
-  for (;;) try {
-      return try_pass(part, mesher_seconds, analysis);
-    } catch (const std::bad_alloc&) {
-      if (!forget_meshes()) out_of_memory(analysis);
-    } catch (const MemoryLimitError&) {
-      if (!forget_meshes()) throw;
-    }
+// Where memory runs out, what other parts have left goes, and the pass is tried once more.
+void run_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) try {
+  try {
+    return try_pass(part, mesher_seconds, analysis);
+  } catch (const std::bad_alloc&) {
+    if (!forget_meshes()) throw;
+  } catch (const MemoryLimitError&) {
+    if (!forget_meshes()) throw;
+  }
+  try_pass(part, mesher_seconds, analysis);
+} catch (const std::bad_alloc&) {
+  out_of_memory(analysis);
 }
 
 }  // namespace

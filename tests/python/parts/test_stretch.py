@@ -10,6 +10,7 @@ import pytest
 import codesign
 from codesign import _core, fem
 from codesign.chain.chain import stress_settings
+from codesign.errors import GeometryError, MemoryLimitError
 from codesign.parts.load_case import part_case
 from codesign.parts.part import Part
 from codesign.parts.stretch import RATIO, meshed_length
@@ -82,6 +83,29 @@ def test_a_limit_of_nothing_keeps_results() -> None:
             assert _core.analyze_part(_case(ForearmJetSupport(90.0, 70.0))).result.peak_stress == kept.peak_stress
     finally:
         _core.limit_kept_meshes(256e6)
+
+
+def test_a_part_that_needs_more_memory_than_its_limit_is_refused() -> None:
+    settings = stress_settings(codesign.load_study("ironcub_paper").config, "forearm_support")
+    case = part_case(ForearmJetSupport(90.0, 70.0), replace(settings, memory_limit=70e6))
+    case.settings.solver = _core.fem.LinearSolver.direct
+    for _ in range(2):  # with nothing kept, and with its mesh
+        with pytest.raises(MemoryLimitError):
+            _core.analyze_part(case)
+
+
+def test_whatever_is_meshed_for_a_valid_part_is_one() -> None:
+    config = codesign.load_study("ironcub_paper").config
+    for angle in np.arange(5.0, 80.0, 5.0):
+        for distance in [*np.arange(15.0, 45.0, 0.5), 120.0, 399.0]:
+            try:
+                bracket = JetpackBracket(angle, distance)
+            except GeometryError:
+                continue
+            for part in (bracket, replace(bracket, seat_analyzed=True)):
+                part._stretched_from(stress_settings(config, part.name))  # raises where it is none
+    for length in [*np.arange(9.0, 40.0, 0.5), 120.0, 500.0]:
+        ForearmJetSupport(90.0, length)._stretched_from(stress_settings(config, "forearm_support"))
 
 
 def test_a_refined_mesh_is_of_the_parts_own_surface() -> None:

@@ -38,7 +38,7 @@ COUNTERBORE_RADIUS, COUNTERBORE_DEPTH = 3.0, 3.4  # of the seat's holes, from th
 SCREW_RADIUS = 4.2
 TURBINE_REACH = 95.0  # from the seat's center to the turbine's axis on the right; 94.5 on the left
 MINIMUM_WALL = 2.0
-TYPICAL_ZONE, SHORTEST_ZONE = 54.0, 4.0  # of the slab, that is stretched
+TYPICAL_ZONE, SHORTEST_ZONE = 54.0, 6.0  # of the slab, that is stretched; what is meshed must be a part too
 FAR = 400.0  # beyond the part, for tools that cut through
 
 
