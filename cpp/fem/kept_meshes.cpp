@@ -78,7 +78,7 @@ double mesh_bytes(const TetMesh& mesh) {
 // and Irani 1997).
 struct Factor {
   std::string key;
-  KeptElements elements;
+  std::shared_ptr<const KeptElements> elements;
   double worth = 0.0;
 };
 
@@ -113,7 +113,7 @@ struct Store {
   }
 
   void use(Factor& factor) const {
-    const Substructure& rest = *factor.elements.rest;
+    const Substructure& rest = *factor.elements->rest;
     factor.worth = forgotten + rest.operations() / rest.bytes();
   }
 
@@ -121,7 +121,7 @@ struct Store {
     double sum = 0.0;
     for (const Entry& entry : entries) {
       sum += entry.bytes();
-      for (const Factor& factor : entry.factors) sum += factor.elements.rest->bytes();
+      for (const Factor& factor : entry.factors) sum += factor.elements->rest->bytes();
     }
     return sum;
   }
@@ -184,10 +184,10 @@ std::shared_ptr<const TetMesh> kept_mesh(const SurfaceMesh& surface, const SizeF
   return mesh;
 }
 
-std::optional<KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& mesh,
-                                          const Stretch& stretch, const Material& material,
-                                          const Constraints& constraints,
-                                          const FactorLimits& limits) {
+std::shared_ptr<const KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& mesh,
+                                                  const Stretch& stretch, const Material& material,
+                                                  const Constraints& constraints,
+                                                  const FactorLimits& limits) {
   const std::string key = elements_key(stretch, material, constraints, limits);
   {
     const std::lock_guard<std::mutex> lock(store().mutex);
@@ -198,11 +198,11 @@ std::optional<KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& 
           return factor.elements;
         }
   }
-  KeptElements elements;
+  std::shared_ptr<const KeptElements> elements;
   try {
     elements = keep_elements(*mesh, reshaped_tets(*mesh, stretch), material, constraints, limits);
   } catch (const MemoryLimitError&) {
-    return std::nullopt;
+    return nullptr;
   }
   const std::lock_guard<std::mutex> lock(store().mutex);
   if (Entry* entry = store().find(mesh.get())) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "fem/boundary/supports.hpp"
 #include "fem/elasticity/substructure.hpp"
@@ -31,9 +30,9 @@ std::shared_ptr<const TetMesh> kept_mesh(const SurfaceMesh& surface, const SizeF
 
 // What stretching leaves of a mesh that was got from `kept_mesh`, factorized now or before; nothing
 // where a factor of it would not fit into the limits.
-std::optional<KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& mesh,
-                                          const Stretch& stretch, const Material& material,
-                                          const Constraints& constraints,
-                                          const FactorLimits& limits);
+std::shared_ptr<const KeptElements> kept_elements(const std::shared_ptr<const TetMesh>& mesh,
+                                                  const Stretch& stretch, const Material& material,
+                                                  const Constraints& constraints,
+                                                  const FactorLimits& limits);
 
 }  // namespace codesign::fem

@@ -141,7 +141,7 @@ StaticSystem make_system(const PartCase& part, const std::shared_ptr<const TetMe
                          const TetMesh& mesh) {
   StaticSettings settings = part.settings;
   settings.solutions = solutions(part);
-  std::optional<KeptElements> elements;
+  std::shared_ptr<const KeptElements> elements;
   if (kept) {
     FactorLimits limits = factor_limits(settings);
     limits.operations *= kDesignsServed;

@@ -187,7 +187,7 @@ struct StaticSystem::Data {
 
 StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
                            StaticSettings settings, std::vector<RemoteMass> masses,
-                           std::optional<KeptElements> kept)
+                           std::shared_ptr<const KeptElements> kept)
     : data_(std::make_unique<Data>()) {
   check_mesh(mesh);
   check_material(material);
@@ -207,8 +207,7 @@ StaticSystem::StaticSystem(TetMesh mesh, Material material, std::vector<Support>
   d.part = held;
   d.equations = free_components(held->constraints);
   if (kept && d.equations > 0) {
-    d.condensed = std::make_unique<CondensedFactor>(*std::move(kept), held->mesh, held->material,
-                                                    held->constraints);
+    d.condensed = std::make_unique<CondensedFactor>(std::move(kept), held->mesh, held->material);
     return;
   }
   d.pattern = order_nodes(held->mesh, held->constraints);

@@ -105,7 +105,7 @@ class StaticSystem {
   // MemoryLimitError if no solver fits into the memory limit, and MeshError for inverted elements.
   StaticSystem(TetMesh mesh, Material material, std::vector<Support> supports,
                StaticSettings settings = {}, std::vector<RemoteMass> masses = {},
-               std::optional<KeptElements> kept = std::nullopt);
+               std::shared_ptr<const KeptElements> kept = nullptr);
   ~StaticSystem();
   StaticSystem(StaticSystem&&) noexcept;
   StaticSystem& operator=(StaticSystem&&) noexcept;

@@ -102,9 +102,8 @@ Substructure::Substructure(const TetMesh& mesh, const std::vector<char>& element
   if (!factor_fits(pattern_, limits))
     throw MemoryLimitError("the factor of a piece of the part is larger than its limits");
   LowerMatrix matrix = assemble_stiffness(chosen, material, pattern_);
-  components_ = free_components(inside, shared);
-  const std::vector<int> equation = equations_of(pattern_, components_);
-  rank_.resize(components_.size());
+  const std::vector<int> equation = equations_of(pattern_, free_components(inside, shared));
+  rank_.resize(equation.size());
   std::iota(rank_.begin(), rank_.end(), 0);
   std::sort(rank_.begin(), rank_.end(),
             [&](int a, int b) { return equation[at(a)] < equation[at(b)]; });
@@ -148,38 +147,44 @@ void Substructure::expand(Condensed condensed, Eigen::VectorXd& u) const {
   scatter(pattern_, solution, u);
 }
 
-KeptElements keep_elements(const TetMesh& mesh, std::vector<char> reshaped,
-                           const Material& material, const Constraints& constraints,
-                           const FactorLimits& limits) {
+std::shared_ptr<const KeptElements> keep_elements(const TetMesh& mesh, std::vector<char> reshaped,
+                                                  const Material& material,
+                                                  const Constraints& constraints,
+                                                  const FactorLimits& limits) {
   std::vector<char> others(reshaped.size());
   std::transform(reshaped.begin(), reshaped.end(), others.begin(), [](char c) { return !c; });
-  const std::vector<char> in_reshaped = nodes_of(chosen_elements(mesh, reshaped));
+  const TetMesh chosen = chosen_elements(mesh, reshaped);
+  const std::vector<char> in_reshaped = nodes_of(chosen);
   const std::vector<char> in_others = nodes_of(chosen_elements(mesh, others));
   std::vector<int> shared;
   for (std::size_t n = 0; n < in_others.size(); ++n)
     if (in_reshaped[n] && in_others[n]) shared.push_back(static_cast<int>(n));
-  auto rest =
-      std::make_shared<const Substructure>(mesh, others, material, constraints, shared, limits);
-  return {std::move(reshaped), std::move(shared), std::move(rest)};
+  auto kept = std::make_shared<KeptElements>();
+  kept->rest =
+      std::make_unique<const Substructure>(mesh, others, material, constraints, shared, limits);
+  kept->pattern = order_with_last(chosen, among(constraints, chosen), shared);
+  kept->components = free_components(constraints, shared);
+  kept->reshaped = std::move(reshaped);
+  return kept;
 }
 
-CondensedFactor::CondensedFactor(KeptElements kept, const TetMesh& mesh, const Material& material,
-                                 const Constraints& constraints)
-    : kept_(std::move(kept)), components_(free_components(constraints, kept_.shared)) {
-  const TetMesh chosen = chosen_elements(mesh, kept_.reshaped);
-  pattern_ = order_with_last(chosen, among(constraints, chosen), kept_.shared);
-  LowerMatrix matrix = assemble_stiffness(chosen, material, pattern_);
-  add_full(kept_.rest->stiffness(), equations_of(pattern_, components_), matrix);
-  factor_ = std::make_unique<CholeskyFactor>(pattern_, matrix);
+CondensedFactor::CondensedFactor(std::shared_ptr<const KeptElements> kept, const TetMesh& mesh,
+                                 const Material& material)
+    : kept_(std::move(kept)) {
+  const NodePattern& pattern = kept_->pattern;
+  LowerMatrix matrix =
+      assemble_stiffness(chosen_elements(mesh, kept_->reshaped), material, pattern);
+  add_full(kept_->rest->stiffness(), equations_of(pattern, kept_->components), matrix);
+  factor_ = std::make_unique<CholeskyFactor>(pattern, matrix);
 }
 
 Eigen::VectorXd CondensedFactor::solve(const Eigen::VectorXd& load) const {
-  Substructure::Condensed rest = kept_.rest->condense(load);
+  Substructure::Condensed rest = kept_->rest->condense(load);
   Eigen::VectorXd forces = load;
-  forces(components_) += rest.shared;
+  forces(kept_->components) += rest.shared;
   Eigen::VectorXd u = Eigen::VectorXd::Zero(load.size());
-  scatter(pattern_, factor_->solve(gather(pattern_, forces)), u);
-  kept_.rest->expand(std::move(rest), u);
+  scatter(kept_->pattern, factor_->solve(gather(kept_->pattern, forces)), u);
+  kept_->rest->expand(std::move(rest), u);
   return u;
 }
 

@@ -44,36 +44,35 @@ class Substructure {
  private:
   NodePattern pattern_;
   std::unique_ptr<CholeskyFactor> factor_;
-  std::vector<int> components_;  // (k) free ones of the shared nodes: 3 node + axis
-  std::vector<int> equations_;   // (k) of them, ascending
-  std::vector<int> rank_;        // (k) place of equations_ among components_
-  Eigen::MatrixXd corner_;       // (k, k) of the factor, at equations_
+  std::vector<int> equations_;  // (k) of the shared components, ascending
+  std::vector<int> rank_;       // (k) their place among the shared components
+  Eigen::MatrixXd corner_;      // (k, k) of the factor, at equations_
   Eigen::MatrixXd stiffness_;
 };
 
 // What does not change from design to design of one mesh.
 struct KeptElements {
-  std::vector<char> reshaped;  // (m) elements that do change
-  std::vector<int> shared;     // nodes between the two, ascending
-  std::shared_ptr<const Substructure> rest;
+  std::vector<char> reshaped;   // (m) elements that do change
+  NodePattern pattern;          // of them
+  std::vector<int> components;  // free ones of the nodes between the two: 3 node + axis
+  std::unique_ptr<const Substructure> rest;
 };
-KeptElements keep_elements(const TetMesh& mesh, std::vector<char> reshaped,
-                           const Material& material, const Constraints& constraints,
-                           const FactorLimits& limits);
+std::shared_ptr<const KeptElements> keep_elements(const TetMesh& mesh, std::vector<char> reshaped,
+                                                  const Material& material,
+                                                  const Constraints& constraints,
+                                                  const FactorLimits& limits);
 
 // Factor of the reshaped elements on what has been kept of the others.
 class CondensedFactor {
  public:
   // Throws SolverError if the part is not held, MeshError if an element is inverted.
-  CondensedFactor(KeptElements kept, const TetMesh& mesh, const Material& material,
-                  const Constraints& constraints);
+  CondensedFactor(std::shared_ptr<const KeptElements> kept, const TetMesh& mesh,
+                  const Material& material);
 
   Eigen::VectorXd solve(const Eigen::VectorXd& load) const;  // (3 n) N -> (3 n) m, 0 where held
 
  private:
-  KeptElements kept_;
-  NodePattern pattern_;
-  std::vector<int> components_;  // free ones of the shared nodes
+  std::shared_ptr<const KeptElements> kept_;
   std::unique_ptr<CholeskyFactor> factor_;
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "box_mesh.hpp"
@@ -43,7 +44,7 @@ struct Bar {
     return nodes;
   }
 
-  KeptElements kept() const {
+  std::shared_ptr<const KeptElements> kept() const {
     return keep_elements(mesh, reshaped_tets(mesh, stretch), kSteel, constrain(mesh, supports),
                          {kMemoryLimit, 1e12});
   }
