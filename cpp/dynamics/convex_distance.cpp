@@ -20,6 +20,22 @@ constexpr double kRelativeTolerance = 1e-12;  // of squared distances
 constexpr double kSameFacet = 1e-9;           // of the size of D: lower bumps belong to the facet
 constexpr double kContact = 1e-10;            // [m]: nearer than this counts as overlapping
 
+// Number of the point that is farthest in a direction, the first of several.
+Eigen::Index farthest(const HullPoints& points, const Vector3d& direction) {
+  Eigen::Index best = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  const double x = direction.x(), y = direction.y(), z = direction.z();
+  const double* point = points.data();
+  for (Eigen::Index i = 0; i < points.cols(); ++i, point += points.outerStride()) {
+    const double along = x * point[0] + y * point[1] + z * point[2];
+    if (along > most) {
+      most = along;
+      best = i;
+    }
+  }
+  return best;
+}
+
 // The Minkowski difference, known by its farthest point in a direction.
 struct Difference {
   const HullPoints& first;
@@ -28,10 +44,9 @@ struct Difference {
 
   Vector3d support(const Vector3d& direction) const {
     const Vector3d opposite = -(first_T_second.R.transpose() * direction);
-    Eigen::Index i = 0, j = 0;
-    (direction.transpose() * first).maxCoeff(&i);
-    (opposite.transpose() * second).maxCoeff(&j);
-    return first.col(i) - first_T_second.R * second.col(j) - first_T_second.p;
+    const Vector3d second_point = second.col(farthest(second, opposite));
+    return first.col(farthest(first, direction)) - first_T_second.R * second_point -
+           first_T_second.p;
   }
 
   // A point inside, which tells from where the origin is seen.
@@ -80,12 +95,24 @@ Simplex with_vertex(const Simplex& old, const Vector3d& newest) {
   return best;
 }
 
+// How far a plane square to a direction keeps the origin from the difference, which lies beyond it
+// along the direction; not positive if it does not.
+double separation(const Difference& difference, const Vector3d& direction) {
+  return direction.dot(difference.support(-direction)) / direction.norm();
+}
+
 // Distance of the difference from the origin, at most kContact if it holds the origin; or as soon
-// as a plane shows that it is more than `limit`, the distance of that plane.
-double distance_to_origin(const Difference& difference, double limit) {
+// as a plane shows that it is more than `limit`, the distance of that plane. `direction`: of such a
+// plane of another posture, tried first, and then that of this one; zero if there is none.
+double distance_to_origin(const Difference& difference, double limit, Vector3d& direction) {
+  if (direction.squaredNorm() > 0.0) {
+    const double apart = separation(difference, direction);
+    if (apart > limit) return apart;
+  }
   Simplex simplex = with_vertex({}, difference.middle());
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double squared = simplex.nearest.squaredNorm();
+    direction = simplex.nearest;
     if (squared <= kContact * kContact) break;
     const Vector3d vertex = difference.support(-simplex.nearest);
     const double along = simplex.nearest.dot(vertex);
@@ -305,13 +332,20 @@ std::vector<Candidate> candidates(const PiecewiseConvex& first, const PiecewiseC
   return found;
 }
 
+// As `signed_distance`; direction: see `distance_to_origin`.
+double signed_distance_from(Vector3d& direction, const HullPoints& first, const HullPoints& second,
+                            const Pose& first_T_second, double limit) {
+  const Difference difference{first, second, first_T_second};
+  const double distance = distance_to_origin(difference, std::max(limit, 0.0), direction);
+  return distance > kContact ? distance : -depth_of_origin(difference, std::max(-limit, 0.0));
+}
+
 }  // namespace
 
 double signed_distance(const HullPoints& first, const HullPoints& second,
                        const Pose& first_T_second, double limit) {
-  const Difference difference{first, second, first_T_second};
-  const double distance = distance_to_origin(difference, std::max(limit, 0.0));
-  return distance > kContact ? distance : -depth_of_origin(difference, std::max(-limit, 0.0));
+  Vector3d direction = Vector3d::Zero();
+  return signed_distance_from(direction, first, second, first_T_second, limit);
 }
 
 PiecewiseConvex::PiecewiseConvex(std::vector<Points> pieces)
@@ -325,13 +359,15 @@ Approach nearest_approach(const PiecewiseConvex& first, const PiecewiseConvex& s
   std::make_heap(open.begin(), open.end(), later);
   Approach nearest{limit, 0};
   Candidate place;
+  // What parted two pieces in one posture mostly parts them in others, by more than the nearest.
+  std::vector<Vector3d> apart(first.pieces().size() * second.pieces().size(), Vector3d::Zero());
   while (!open.empty() && open.front().bound <= nearest.distance) {
     const Candidate next = open.front();
     std::pop_heap(open.begin(), open.end(), later);
     open.pop_back();
-    const double distance =
-        signed_distance(first.pieces()[next.first], second.pieces()[next.second],
-                        first_T_second[next.posture], nearest.distance);
+    const double distance = signed_distance_from(
+        apart[next.first * second.pieces().size() + next.second], first.pieces()[next.first],
+        second.pieces()[next.second], first_T_second[next.posture], nearest.distance);
     const bool earlier = nearest.distance < limit && next.place() < place.place();
     if (distance < nearest.distance || (distance == nearest.distance && earlier)) {
       nearest = {distance, next.posture};
