@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from codesign.chain.flight import joint_names
-from codesign.parts.part import Part
+from codesign.parts.part import COARSE_RESOLUTION, Part
 from codesign.robot.clearance import flown_interference
 from codesign.robot.hulls import convex_pieces
 from codesign.transforms import Matrix
+from codesign.units import MILLIMETER
 
 if TYPE_CHECKING:
     from codesign import dynamics as dyn
     from codesign.robot.description import RobotDescription
     from codesign.study.config import StudyConfig
-
-CLEARANCE_SEGMENTS = 24  # chords on a circle of the parts' surfaces: 0.6 mm inside the largest radius
 
 
 def clearances(
@@ -46,5 +45,5 @@ def clearances(
 @functools.lru_cache(maxsize=512)
 def part_pieces(part: Part, slices: int) -> tuple[Matrix, ...]:
     """Convex pieces of a part, part axes [m]; kept (10 kB each), since designs share parts."""
-    surface = part.surface(CLEARANCE_SEGMENTS)
-    return tuple(convex_pieces(surface.points, surface.triangles, slices))
+    solid = part.solid(COARSE_RESOLUTION)  # of which the mass has made most; 0.6 mm inside the largest radius
+    return tuple(convex_pieces(solid.points * MILLIMETER, solid.triangles, slices))

@@ -6,7 +6,7 @@ import dataclasses
 import math
 import os
 from abc import ABC, abstractmethod
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar
 
@@ -20,8 +20,7 @@ from codesign.geometry.solid import Solid, build_solid
 from codesign.parts.surface import SurfaceMesh, surface_mesh
 
 _PARAMETER = "codesign.parameter"
-# Of the coarsest of the meshes that mass properties are extrapolated from.
-MASS_SEGMENTS, MASS_CHORD_MM = 24, 0.12
+COARSE_RESOLUTION = Resolution(segments=24, chord_mm=0.12)  # of the coarsest mesh that mass is extrapolated from
 EXPORT_RESOLUTION = Resolution(segments=4096, chord_mm=0.01)
 SURFACE_RESOLUTION = Resolution(segments=48)
 FEM_CHORD_MM = 0.03  # between chord and arc of small circles at 48 segments: stresses do not change with less
@@ -203,8 +202,14 @@ class MirroredPart(Part):
 
 @lru_cache(maxsize=8)
 def _solid(part: Part, resolution: Resolution) -> Solid:
-    """Mesh of a part; the last ones are kept, since mass, surface and files ask for the same."""
-    return _checked(part.shape(), resolution, part.through_holes()).tidied()
+    """Mesh of a part; the last ones are kept, since surface and files ask for the same."""
+    return _mesh(part, resolution).tidied()
+
+
+@lru_cache(maxsize=8)
+def _mesh(part: Part, resolution: Resolution) -> Solid:
+    """The same before it is tidied; the last ones are kept, since mass and clearances ask for the same."""
+    return _checked(part.shape(), resolution, part.through_holes())
 
 
 @lru_cache(maxsize=128)
@@ -222,12 +227,16 @@ def _moments(part: Part) -> Vector:
     """
     if has_exact(part.shape()):
         return exact_moments(part.shape())
-    coarse, fine = (_mesh_moments(part, refine) for refine in (1, 2))
-    return extrapolate(coarse, fine, None if settled(coarse, fine) else _mesh_moments(part, 4))
+    coarse, fine = _solid_moments(_mesh(part, COARSE_RESOLUTION)), _refined_moments(part, 2)
+    return extrapolate(coarse, fine, None if settled(coarse, fine) else _refined_moments(part, 4))
 
 
-def _mesh_moments(part: Part, refine: int) -> Vector:
-    solid = _checked(part.shape(), Resolution(MASS_SEGMENTS, MASS_CHORD_MM, refine), part.through_holes())
+def _refined_moments(part: Part, refine: int) -> Vector:
+    resolution = replace(COARSE_RESOLUTION, refine=refine)
+    return _solid_moments(_checked(part.shape(), resolution, part.through_holes()))
+
+
+def _solid_moments(solid: Solid) -> Vector:
     return volume_moments(solid.points, solid.triangles)
 
 

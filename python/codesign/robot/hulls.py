@@ -37,16 +37,17 @@ def convex_pieces(points: Matrix, triangles: NDArray[Any], count: int) -> list[M
     planes = np.linspace(along.max(), along.min(), count + 1)
     reach = along[triangles]
     lowest, highest = reach.min(axis=1), reach.max(axis=1)
+    starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    once = starts < ends  # the edge's other triangle has it the other way round
+    crossings = [_crossings(points, starts[once], ends[once], axis, plane) for plane in planes]
     pieces = []
-    for high, low in pairwise(planes):
+    for k, (high, low) in enumerate(pairwise(planes)):
         inside = triangles[(lowest < high) & (highest > low)]
         if len(inside):
-            corners = points[np.unique(inside)]
-            corners = corners[(corners[:, axis] >= low) & (corners[:, axis] <= high)]
-            edges = np.concatenate([inside[:, [0, 1]], inside[:, [1, 2]], inside[:, [2, 0]]])
-            edges = edges[edges[:, 0] < edges[:, 1]]  # each once: its other triangle has it the other way round
-            crossed = [_crossings(points, edges, axis, plane) for plane in (high, low)]
-            pieces.append(hull_vertices(np.vstack([corners, *crossed])))
+            corner = np.zeros(len(points), dtype=bool)
+            corner[inside] = True
+            corner &= (along >= low) & (along <= high)
+            pieces.append(hull_vertices(np.vstack([points[corner], crossings[k], crossings[k + 1]])))
     return pieces
 
 
@@ -58,11 +59,11 @@ def _require_closed(triangles: NDArray[Any], count: int) -> None:
         raise MeshError("no convex pieces: the surface is not closed")
 
 
-def _crossings(points: Matrix, edges: Indices, axis: int, plane: float) -> Matrix:
-    """Points (k, 3) where edges (m, 2) cross a plane square to an axis."""
-    a, b = points[edges[:, 0]], points[edges[:, 1]]
-    crosses = (a[:, axis] < plane) != (b[:, axis] < plane)
-    a, b = a[crosses], b[crosses]
+def _crossings(points: Matrix, starts: Indices, ends: Indices, axis: int, plane: float) -> Matrix:
+    """Points (k, 3) where edges, of which points (m,) are the starts and ends, cross a plane square to an axis."""
+    below = points[:, axis] < plane
+    crosses = below[starts] != below[ends]
+    a, b = points[starts[crosses]], points[ends[crosses]]
     share = (plane - a[:, axis]) / (b[:, axis] - a[:, axis])
     found = a + share[:, None] * (b - a)
     found[:, axis] = plane

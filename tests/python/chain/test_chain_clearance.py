@@ -1,15 +1,19 @@
 """Clearances as part of the chain: reported for every flown design, a constraint where the study says so."""
 
 import msgspec
+import numpy as np
 import pytest
 
 import codesign
 from codesign import dynamics
 from codesign.chain import chain as pipeline
-from codesign.chain.clearances import clearances
+from codesign.chain.clearances import clearances, part_pieces
 from codesign.chain.documents import flight_document, objective_families
 from codesign.chain.flight import flight_settings, joint_names
 from codesign.chain.judge import judge
+from codesign.geometry.profile import Resolution
+from codesign.parts import part as part_module
+from codesign.units import MILLIMETER
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +68,16 @@ def test_a_study_without_the_section_measures_nothing(flown):
     silent = msgspec.structs.replace(config, interference=None)
     assert clearances(silent, {}, None, [log]) == {}
     assert "body_clearance" not in judged(silent, log, {}).constraints
+
+
+def test_clearances_take_the_mesh_that_the_mass_made(monkeypatch):
+    study = codesign.load_study("ironcub_paper")
+    parts = study.build_parts(study.space.from_indices((33, 7, 11, 13))).values()
+    for part in parts:
+        part.mass_properties()
+    monkeypatch.setattr(part_module, "build_solid", None)  # no other is made
+    pieces = [np.vstack(part_pieces(part, 8)) for part in parts]
+    monkeypatch.undo()
+    for part, points in zip(parts, pieces, strict=True):
+        fine = part.solid(Resolution(512)).points * MILLIMETER
+        assert np.abs(np.ptp(points, axis=0) - np.ptp(fine, axis=0)).max() < 1.2e-3  # twice 0.6 mm
