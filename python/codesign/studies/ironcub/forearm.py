@@ -27,7 +27,15 @@ from codesign.geometry.shape import (
     stepped_hole,
     union,
 )
-from codesign.parts.load_case import PressedFace, PushedFace, StressSettings, held_faces, load_cases, native_case
+from codesign.parts.load_case import (
+    PartLoad,
+    PressedFace,
+    PushedFace,
+    StressSettings,
+    held_faces,
+    load_cases,
+    native_case,
+)
 from codesign.parts.part import Part, parameter
 from codesign.parts.stretch import meshed_length, stretch_mm
 from codesign.units import MILLIMETER
@@ -229,8 +237,9 @@ class ForearmJetSupport(Part):
     rod_radius = ROD_RADIUS * MILLIMETER
 
     def stress_case(self, settings: StressSettings) -> _core.PartCase:
-        """The whole part, finest in the fillets at the rod's ends on the side of the ring, where the stress is largest.
+        """The whole part, finest in the fillets at the rod's ends on the side of the ring, where thrusts bend it most.
 
+        Loads across the rod bend it most at the flange: with any, the mesh is finer there and at the relief's corner.
         The load is a traction over the distal face, affine so that its resultant passes exactly through the centroid of
         the true face (which the spigot interrupts), or through the turbine's axis (`load = "thrust_line"`).
         """
@@ -264,9 +273,10 @@ class ForearmJetSupport(Part):
         return meshed, stretch_mm(rod_start, along, start, meshed.length - end, self.length - meshed.length)
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
-        """Arcs inside the fillets at the rod's ends, finest at the collar on the side of the ring; the rod itself."""
+        """Arcs inside the fillets at the rod's ends, finest on the side of the ring; the rod itself; the relief."""
         fine = settings.accuracy != "optimization"
-        base, near, far, opposite = (8.0, 0.35, 0.35, 2.0) if fine else (20.0, 0.45, 0.7, 3.0)
+        across = bool(settings.flown) or not all(_along_rod(load) for case in settings.cases for load in case.loads)
+        base, near, far, opposite = (8.0, 0.35, 0.35, 2.0) if fine else (20.0, 0.45, 0.5 if across else 0.7, 3.0)
         growth, rod, rod_growth = (0.35, 4.0, 0.35) if fine else (0.5, 7.0, 0.8)
         start, end = self.rod_ends
         turn = np.radians(np.linspace(-20.0, 20.0, 9))
@@ -281,4 +291,27 @@ class ForearmJetSupport(Part):
                 for center, size in ((start - inside, far), (end + inside, near))
             ]
         sources.append(fem.SizeSource(np.array([start, end]), rod * MILLIMETER, rod_growth, self.rod_radius))
+        if across:
+            sources += self._relief_sources(fine)
         return fem.SizeField(base * MILLIMETER, sources)
+
+    def _relief_sources(self, fine: bool) -> list[fem.SizeSource]:
+        """Lines in the relief's corner away from the flange, on both sides: where bending about z is largest."""
+        size, growth = (0.3, 0.4) if fine else (0.5, 0.6)
+        x, y = RELIEF_X + 1.0, AXIS[1] + RELIEF_FLOOR + 0.1
+        lines = [np.array([[x, y, side * z] for z in (3.5, 5.0)]) * MILLIMETER for side in (-1.0, 1.0)]
+        return [fem.SizeSource(line, size * MILLIMETER, growth, 0.6 * MILLIMETER) for line in lines]
+
+
+def _along_rod(load: PartLoad) -> bool:
+    """Whether a load bends the rod as a thrust does: evenly, in the plane of the rod's and the ring's axes."""
+    if isinstance(load, PressedFace | fem.Pressure):
+        return True
+    if isinstance(load, PushedFace):
+        return not any(load.force[1:])
+    if isinstance(load, fem.AffineTraction):
+        (_, y, z), (mx, _, mz) = np.asarray(load.force, dtype=float), np.asarray(load.moment, dtype=float)
+        return bool(y == z == mx == mz == 0.0 and np.asarray(load.point)[1] == AXIS[1] * MILLIMETER)
+    return isinstance(load, fem.Acceleration) and not (
+        np.any(np.asarray(load.acceleration)[1:]) or np.any(load.gradient)
+    )
