@@ -11,17 +11,15 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from codesign.problem.design_space import value_text
-from codesign.problem.evaluation import least_infeasible
-from codesign.problem.quantities import FAMILY, Quantity, quantity
-
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from codesign.followup.confirmation import Confirmed
     from codesign.followup.tables import Table as PartTable
     from codesign.parts.strength import Confirmation
+    from codesign.problem.design_space import DesignValue
     from codesign.problem.evaluation import Evaluation
+    from codesign.problem.quantities import Quantity
     from codesign.report.data import ReportData
     from codesign.report.tolerances import Tolerances
     from codesign.storage.records import Record
@@ -50,8 +48,7 @@ def shown(value: Any, digits: int = 6) -> str:
 def print_evaluation(evaluation: Evaluation) -> None:
     """Text summary of one evaluation."""
     color = {"feasible": "green", "infeasible": "yellow", "skipped": "yellow", "failed": "red"}[evaluation.status]
-    design = "  ".join(f"{name}={value_text(value)}" for name, value in evaluation.design.items())
-    out.print(Text.assemble((evaluation.status, f"bold {color}"), f"  {design}"))
+    out.print(Text.assemble((evaluation.status, f"bold {color}"), f"  {_design_text(evaluation.design)}"))
     if evaluation.reason:
         out.print(evaluation.reason)
     table = Table(show_header=False, box=None, pad_edge=False)
@@ -82,8 +79,17 @@ def print_evaluation(evaluation: Evaluation) -> None:
     out.print(table)
 
 
+def _design_text(design: Mapping[str, DesignValue]) -> str:
+    """Names and values of a design in one line."""
+    from codesign.problem.design_space import value_text
+
+    return "  ".join(f"{name}={value_text(value)}" for name, value in design.items())
+
+
 def _quantity(evaluation: Evaluation, key: str) -> Quantity:
     """What is known of a number of an evaluation; its objectives tell the family that they are of."""
+    from codesign.problem.quantities import FAMILY, quantity
+
     families = evaluation.objective_families.items()
     of = (family for family, values in families if key in FAMILY and values.get(key) == evaluation.objectives.get(key))
     return quantity(key, next(of, "rms"))
@@ -146,8 +152,10 @@ def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
 
 def print_tolerances(found: Tolerances) -> None:
     """Of every sampled design the share that is feasible, and how its numbers scatter."""
+    from codesign.problem.quantities import quantity
+
     for made in found.designs:
-        design = "  ".join(f"{name}={value_text(value)}" for name, value in made.design.items())
+        design = _design_text(made.design)
         verdict = "" if made.robust else "; not to be recommended"
         out.print(f"{made.role}  {design}: {made.feasible} of {made.samples} samples are feasible{verdict}")
         table = Table("", "least", "5 %", "median", "95 %", "largest", box=None, pad_edge=False)
@@ -182,6 +190,7 @@ def _left_out(part: Mapping[str, Any]) -> str:
 
 def print_run(run: Run, as_json: bool) -> int:
     """Summary of a run and its front, or of what comes nearest to one; exit code 1 if nothing is feasible."""
+    from codesign.problem.evaluation import least_infeasible
     from codesign.storage.runs import summarize
 
     summary = summarize(run)
@@ -278,6 +287,8 @@ def _print_front(front: Sequence[Record]) -> None:
 
 def _front_table(rows: Sequence[Record], variables: Sequence[str]) -> Table:
     """Number in the run, some of the variables, objectives, smallest safety factor of all parts."""
+    from codesign.problem.design_space import value_text
+
     table = Table(title=f"Pareto front, {len(rows)} designs", title_justify="left")
     known = [_quantity(rows[0].evaluation, key) for key in rows[0].evaluation.objectives]
     for name in ("design", *variables, *map(_head, known), "safety_factor"):
@@ -299,9 +310,11 @@ def _head(known: Quantity) -> str:
 
 def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:
     """The least infeasible design and what it violates; if all failed, the commonest reason."""
+    from codesign.problem.evaluation import least_infeasible
+
     closest = least_infeasible(evaluations)
     if closest is not None:
-        design = "  ".join(f"{name}={value_text(value)}" for name, value in closest.design.items())
+        design = _design_text(closest.design)
         out.print(Text.assemble(("nothing is feasible", "bold yellow"), f"; the least infeasible design: {design}"))
         out.print(closest.reason or "", soft_wrap=True)
         for name, violation in closest.violations.items():
@@ -310,68 +323,6 @@ def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:
     elif reasons := Counter(evaluation.reason for evaluation in evaluations if evaluation.reason):
         reason, count = reasons.most_common(1)[0]
         out.print(f"all {len(evaluations)} designs failed, {count} of them: {reason}", soft_wrap=True)
-
-
-def print_stress(document: dict[str, Any]) -> None:
-    """Text summary of `codesign stress`."""
-    from codesign.cli.stress_file import describe_repair
-
-    table = Table(show_header=False, box=None, pad_edge=False)
-    factor = document["safety_factor"]
-    known = document["safety_factor_reason"] if factor is None else f"{factor:.3g}"
-    table.add_row("safety factor", f"{known} ({document['material']})")
-    peak = f"{document['peak_stress'] / 1e6:.4g} ± {document['stress_error'] / 1e6:.2g} MPa"
-    unresolved = "" if document["peak_resolved"] else " (not resolved)"
-    table.add_row("peak stress", f"{peak}{unresolved} at {_millimeters(document['peak_position'])}")
-    table.add_row("largest stress left out", _describe_left_out(document["left_out"]))
-    table.add_row("stress exceeded in 50 mm³", f"{document['stress_50'] / 1e6:.4g} MPa")
-    table.add_row("largest displacement", f"{document['max_displacement'] * 1e3:.4g} mm")
-    for place in document["places"]:
-        table.add_row(f"{place['kind']} {place['selection']}", _describe_place(place))
-    if document["repair"] is not None:
-        table.add_row("repair", describe_repair(document["repair"]))
-    if document["smoothing"] is not None:
-        table.add_row("facets curved back", _describe_facets(document["smoothing"]))
-    if document["facets_literal"] is not None:
-        table.add_row("facets that look round", _describe_facets(document["facets_literal"]) + " if --smooth")
-    table.add_row("elements", _describe_elements(document))
-    table.add_row("seconds", "  ".join(f"{key} {value:.2f}" for key, value in document["seconds"].items()))
-    out.print(table)
-    for warning in document["warnings"]:
-        out.print(Text.assemble(("warning", "yellow"), f": {warning}"))
-
-
-def _millimeters(position: list[float]) -> str:
-    return ", ".join(f"{1e3 * x:.2f}" for x in position) + " mm"
-
-
-def _describe_left_out(left_out: dict[str, Any] | None) -> str:
-    if left_out is None:
-        return "none"
-    border = f"{left_out['border_distance'] * 1e3:.2g} mm from a border of a clamp or load"
-    return f"{left_out['stress'] / 1e6:.4g} MPa at {_millimeters(left_out['position'])}, {border}"
-
-
-def _describe_place(place: dict[str, Any]) -> str:
-    bend = f", bends by {place['bend_deg']:.0f}°" if place["bend_deg"] >= 0.5 else ""
-    facets = f", {place['facets']} facets" if place["facets"] else ", part of a facet"
-    return f"{place['type']}, {place['area'] * 1e6:.4g} mm² at {_millimeters(place['centroid'])}{bend}{facets}"
-
-
-def _describe_elements(document: dict[str, Any]) -> str:
-    size, smallest = 1e3 * document["edge_length"], 1e3 * document["smallest_edge_length"]
-    thin = f", {smallest:.3g} mm at thin walls" if smallest < size else ""
-    rounds = document["mesh"]["refinements"]
-    refined = f", refined {rounds}x to keep the surface whole" if rounds else ""
-    return f"{document['tetrahedra']}, edge length {size:.3g} mm{thin}{refined}"
-
-
-def _describe_facets(facets: dict[str, Any]) -> str:
-    if facets["reason"]:
-        return f"none: {facets['reason']}"
-    left = f", {facets['left']} left flat to avoid folding" if facets["left"] else ""
-    distance, volume = f"{1e3 * facets['max_distance']:.2g} mm", f"{facets['volume_change']:+.2%}"
-    return f"{facets['facets']} by up to {distance}, volume {volume}{left}"
 
 
 def print_diagnosis(report: dict[str, Any]) -> None:

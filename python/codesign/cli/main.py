@@ -5,6 +5,8 @@ Exit codes: 0 done; 1 ran, but the answer is negative (infeasible, failed design
 
 from __future__ import annotations
 
+import copy
+import inspect
 import logging
 import os
 import sys
@@ -41,10 +43,32 @@ def options(
     """Co-design of parametric parts, robot and controller."""
 
 
+def listing() -> typer.Typer:
+    """The commands by their words alone: for a list of them their options need not be read, which takes as long again.
+
+    That is what `--help` of the whole prints; it is the same text.
+    """
+    listed = copy.copy(app)
+    listed.registered_groups, listed.registered_commands = [], []
+    for group in app.registered_groups:
+        for command in group.typer_instance.registered_commands if group.typer_instance else ():
+            assert command.callback is not None
+            words = copy.copy(command)
+            words.name = command.name or command.callback.__name__.replace("_", "-")
+            words.help = command.help or inspect.getdoc(command.callback)
+            words.callback = _no_command
+            listed.registered_commands.append(words)
+    return listed
+
+
+def _no_command() -> None:
+    """Stands for a command whose options nobody asks for."""
+
+
 def main() -> None:
     """Entry point: runs the command line and turns typed errors into exit code 2."""
     logging.basicConfig(level=logging.WARNING, stream=sys.stderr, format="%(levelname)s %(name)s: %(message)s")
-    command = typer.main.get_command(app)
+    command = typer.main.get_command(listing() if sys.argv[1:] == ["--help"] else app)
     try:
         with _interruptible():
             code = command.main(standalone_mode=False)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from codesign.errors import DesignError
-from codesign.problem.design_space import DesignValue
+
+if TYPE_CHECKING:
+    from codesign.problem.design_space import DesignValue
 
 
 def complete_study(incomplete: str) -> list[str]:

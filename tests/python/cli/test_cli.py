@@ -6,8 +6,10 @@ import subprocess
 import sys
 
 import pytest
+from typer.testing import CliRunner
 
 from codesign import load_study
+from codesign.cli.main import app, listing
 from codesign.storage.runs import load_run
 
 COMMANDS = (
@@ -28,6 +30,11 @@ def test_help_has_an_example(command):
     result = codesign(command, "--help")
     assert result.returncode == 0
     assert "Example" in result.stdout
+
+
+def test_the_list_of_commands_is_that_of_the_commands_themselves():
+    shown = [CliRunner().invoke(commands, ["--help"], prog_name="codesign").stdout for commands in (app, listing())]
+    assert shown[0] == shown[1] and all(f" {command} " in shown[0] for command in COMMANDS)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from codesign.cli.console import print_json, print_stress
+from codesign.cli.console import print_json
 from codesign.cli.options import JsonOption
 
 commands = typer.Typer()
@@ -69,6 +69,7 @@ def stress(
     """
     from codesign.cli.stress import stress_document
     from codesign.cli.stress_options import find_material
+    from codesign.cli.stress_text import print_stress
 
     document = stress_document(
         part,
