@@ -113,15 +113,14 @@ struct Store {
   }
 
   void use(Factor& factor) const {
-    const Substructure& rest = *factor.elements->rest;
-    factor.worth = forgotten + rest.operations() / rest.bytes();
+    factor.worth = forgotten + factor.elements->operations() / factor.elements->bytes();
   }
 
   double bytes() const {
     double sum = 0.0;
     for (const Entry& entry : entries) {
       sum += entry.bytes();
-      for (const Factor& factor : entry.factors) sum += factor.elements->rest->bytes();
+      for (const Factor& factor : entry.factors) sum += factor.elements->bytes();
     }
     return sum;
   }

@@ -137,27 +137,27 @@ int solutions(const PartCase& part) {
   return static_cast<int>(count);
 }
 
-StaticSystem make_system(const PartCase& part, const std::shared_ptr<const TetMesh>& kept,
-                         const TetMesh& mesh) {
+StaticSettings settings_of(const PartCase& part) {
   StaticSettings settings = part.settings;
   settings.solutions = solutions(part);
-  std::shared_ptr<const KeptElements> elements;
-  if (kept) {
-    FactorLimits limits = factor_limits(settings);
-    limits.operations *= kDesignsServed;
-    elements =
-        kept_elements(kept, *part.stretch, part.material, constrain(*kept, part.supports), limits);
-  }
-  return {mesh, part.material, part.supports, settings, part.masses, std::move(elements)};
+  return settings;
 }
 
-// The factor of the symmetric motions gives way to that of the antisymmetric ones. kept: the mesh
-// before it was stretched, if it was.
-void solve(const PartCase& part, const std::shared_ptr<const TetMesh>& kept,
+// What stretching leaves of a mesh; nothing where it is not worth keeping.
+std::shared_ptr<const KeptElements> elements_of(const PartCase& part,
+                                                const std::shared_ptr<const TetMesh>& mesh) {
+  FactorLimits limits = factor_limits(settings_of(part));
+  limits.operations *= kDesignsServed;
+  return kept_elements(mesh, *part.stretch, part.material, constrain(*mesh, part.supports), limits);
+}
+
+// The factor of the symmetric motions gives way to that of the antisymmetric ones.
+void solve(const PartCase& part, const std::shared_ptr<const KeptElements>& kept,
            PartAnalysis& analysis) {
   CaseFactors factors;
   {
-    const StaticSystem system = make_system(part, kept, analysis.mesh);
+    const StaticSystem system(analysis.mesh, part.material, part.supports, settings_of(part),
+                              part.masses, kept);
     solve_cases(part, system, analysis);
     for (const VaryingCase& varying : part.varying) {
       analysis.responses.push_back(system.unit_responses(varying.units));
@@ -173,6 +173,20 @@ void solve(const PartCase& part, const std::shared_ptr<const TetMesh>& kept,
   }
   if (!turned.empty()) add_antisymmetric_factors(part, turned, analysis, factors);
   if (part.buckling > 0) analysis.buckling_factors = least_factors(factors, part.buckling);
+}
+
+// A part that single precision does not resolve, kept elements or the rest of it, has one factor.
+void solve_stretched(const PartCase& part, const std::shared_ptr<const TetMesh>& mesh,
+                     PartAnalysis& analysis) {
+  const PartAnalysis meshed = analysis;
+  try {
+    return solve(part, elements_of(part, mesh), analysis);
+  } catch (const MemoryLimitError&) {
+    throw;
+  } catch (const SolverError&) {
+    analysis = meshed;
+  }
+  solve(part, nullptr, analysis);
 }
 
 // One mesh and its solution; times are added to those of the passes before.
@@ -197,7 +211,7 @@ void try_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analys
   mesher_seconds += thread_seconds() - before;
   analysis.mesh_seconds += seconds_since(start);
   const Clock::time_point meshed = Clock::now();
-  solve(part, kept, analysis);
+  kept ? solve_stretched(part, kept, analysis) : solve(part, nullptr, analysis);
   analysis.solve_seconds += seconds_since(meshed);
 }
 

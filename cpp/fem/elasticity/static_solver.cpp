@@ -21,6 +21,7 @@ namespace codesign::fem {
 namespace {
 
 constexpr int kMaxRefinements = 3;
+constexpr int kMaxGradients = 12;             // of a factor in single precision
 constexpr double kGradientTolerance = 1e-11;  // of conjugate gradients, see there
 constexpr int kMaxIterations = 500;
 // Multiply-adds of a factorization that takes as long as conjugate gradients on the same part.
@@ -128,6 +129,26 @@ struct StaticSystem::Data {
     return free;
   }
 
+  // Conjugate gradients on the elements, the condensed factor as preconditioner: adds to u what the
+  // load less internal forces asks for, and no more than that is promised of the residual.
+  void approach(const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
+                Eigen::VectorXd& u) const {
+    Eigen::VectorXd residual = felt(load - internal), direction;
+    double scale = load.norm(), before = 0.0;
+    for (int step = 0; step < kMaxGradients; ++step) {
+      const Eigen::VectorXd preconditioned = condensed->solve(residual);
+      const double descent = residual.dot(preconditioned);
+      direction = step == 0 ? preconditioned : preconditioned + descent / before * direction;
+      before = descent;
+      const InternalForces forces = internal_forces(part->mesh, part->material, direction);
+      const double length = descent / direction.dot(forces.sum);
+      u += length * direction;
+      residual -= length * felt(forces.sum);
+      if (step == 0) scale = std::max(scale, length * forces.size.norm());
+      if (!(residual.norm() > part->settings.residual_tolerance * scale)) return;
+    }
+  }
+
   // Displacement with iterative refinement; internal is left as its internal forces.
   Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal, double& residual,
                            int& iterations) const {
@@ -136,8 +157,9 @@ struct StaticSystem::Data {
     residual = 0.0;
     if (equations == 0) return u;
     if (load.isZero(0.0) && internal.isZero(0.0)) return u;
+    if (condensed) approach(load, internal, u);
     for (int step = 0; step <= kMaxRefinements; ++step) {
-      u += solve_nodal(load - internal, iterations);
+      if (!condensed || step > 0) u += solve_nodal(load - internal, iterations);
       InternalForces forces = internal_forces(part->mesh, part->material, u);
       internal = std::move(forces.sum);
       const double scale = std::max(load.norm(), forces.size.norm());

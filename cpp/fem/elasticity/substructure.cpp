@@ -39,11 +39,38 @@ Constraints among(const Constraints& constraints, const TetMesh& elements) {
   return inside;
 }
 
-NodePattern order_with_last(const TetMesh& elements, const Constraints& inside,
-                            const std::vector<int>& last) {
-  std::vector<char> flags(at(static_cast<int>(elements.nodes.rows())), 0);
-  for (const int node : last) flags[at(node)] = 1;
-  return order_nodes(elements, inside, VertexOrdering::automatic, flags);
+// Flags of the elements that are not among the given ones, for each group of them that hangs
+// together by nodes.
+std::vector<std::vector<char>> groups_of_others(const TetMesh& mesh,
+                                                const std::vector<char>& given) {
+  std::vector<int> leader(at(static_cast<int>(mesh.nodes.rows())));
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int node) {
+    while (leader[at(node)] != node) node = leader[at(node)] = leader[at(leader[at(node)])];
+    return node;
+  };
+  for (int e = 0; e < mesh.tets.rows(); ++e)
+    for (int i = 1; i < kTetNodes && !given[at(e)]; ++i)
+      leader[at(find(mesh.tets(e, i)))] = find(mesh.tets(e, 0));
+  std::vector<int> group_of(leader.size(), -1);
+  std::vector<std::vector<char>> groups;
+  for (int e = 0; e < mesh.tets.rows(); ++e) {
+    if (given[at(e)]) continue;
+    int& group = group_of[at(find(mesh.tets(e, 0)))];
+    if (group < 0) {
+      group = static_cast<int>(groups.size());
+      groups.emplace_back(given.size(), 0);
+    }
+    groups[at(group)][at(e)] = 1;
+  }
+  return groups;
+}
+
+std::vector<int> shared_nodes(const std::vector<char>& some, const std::vector<char>& others) {
+  std::vector<int> shared;
+  for (std::size_t n = 0; n < some.size(); ++n)
+    if (some[n] && others[n]) shared.push_back(static_cast<int>(n));
+  return shared;
 }
 
 std::vector<int> free_components(const Constraints& constraints, const std::vector<int>& nodes) {
@@ -54,137 +81,133 @@ std::vector<int> free_components(const Constraints& constraints, const std::vect
   return components;
 }
 
-Eigen::VectorXd gather(const NodePattern& pattern, const Eigen::VectorXd& nodal) {
-  Eigen::VectorXd values(pattern.equations());
+int count_free(const Constraints& constraints, const std::vector<int>& nodes) {
+  return static_cast<int>(free_components(constraints, nodes).size());
+}
+
+Eigen::VectorXf gather(const NodePattern& pattern, const Eigen::VectorXd& nodal) {
+  Eigen::VectorXf values(pattern.equations());
   for (std::size_t d = 0; d < pattern.equation.size(); ++d)
-    if (pattern.equation[d] >= 0) values[pattern.equation[d]] = nodal[static_cast<int>(d)];
+    if (pattern.equation[d] >= 0)
+      values[pattern.equation[d]] = static_cast<float>(nodal[static_cast<int>(d)]);
   return values;
 }
 
-void scatter(const NodePattern& pattern, const Eigen::VectorXd& values, Eigen::VectorXd& nodal) {
+void scatter(const NodePattern& pattern, const Eigen::VectorXf& values, Eigen::VectorXd& nodal) {
   for (std::size_t d = 0; d < pattern.equation.size(); ++d)
     if (pattern.equation[d] >= 0) nodal[static_cast<int>(d)] = values[pattern.equation[d]];
 }
 
-// Adds a full symmetric matrix between equations that the pattern couples.
-void add_full(const Eigen::MatrixXd& full, const std::vector<int>& equations, LowerMatrix& matrix) {
-  for (Eigen::Index j = 0; j < full.cols(); ++j) {
-    const int column = equations[static_cast<std::size_t>(j)];
-    const auto first = matrix.row.begin() + matrix.start[at(column)];
-    const auto end = matrix.row.begin() + matrix.start[at(column) + 1];
-    for (Eigen::Index i = 0; i < full.rows(); ++i) {
-      const int row = equations[static_cast<std::size_t>(i)];
-      if (row < column) continue;
-      const auto place = std::lower_bound(first, end, row) - matrix.row.begin();
-      matrix.value[static_cast<std::size_t>(place)] += full(i, j);
-    }
-  }
+// The pattern of elements whose shared nodes come last.
+NodePattern order_piece(const TetMesh& elements, const Constraints& inside,
+                        const std::vector<int>& shared, const FactorLimits& limits) {
+  NodePattern pattern = order_nodes(elements, inside, VertexOrdering::automatic, {{shared}, true});
+  if (!factor_fits(pattern, limits))
+    throw MemoryLimitError("the factor of a piece of the part is larger than its limits");
+  return pattern;
 }
 
-std::vector<int> equations_of(const NodePattern& pattern, const std::vector<int>& components) {
-  std::vector<int> equations;
-  equations.reserve(components.size());
-  for (const int component : components) equations.push_back(pattern.equation[at(component)]);
-  return equations;
+SingleFactor factorize_reshaped(const KeptElements& kept, const TetMesh& mesh,
+                                const Material& material) {
+  std::vector<DenseBlock> blocks;
+  for (const KeptElements::Piece& piece : kept.pieces) {
+    std::vector<int> equations;
+    for (const int component : piece.components)
+      equations.push_back(kept.pattern.equation[at(component)]);
+    blocks.push_back({piece.elements.stiffness(), std::move(equations)});
+  }
+  const LowerMatrix matrix =
+      assemble_stiffness(chosen_elements(mesh, kept.reshaped), material, kept.pattern);
+  return {kept.pattern, matrix, 0, blocks};
 }
 
 }  // namespace
 
-// The shared nodes come last in the factor, so its corner there is the factor of their Schur
-// complement. A piece that only they hold is singular without a stiffness of theirs: they get their
-// own diagonal once more, which is taken off the product.
 Substructure::Substructure(const TetMesh& mesh, const std::vector<char>& elements,
                            const Material& material, const Constraints& constraints,
-                           const std::vector<int>& shared, const FactorLimits& limits) {
-  const TetMesh chosen = chosen_elements(mesh, elements);
-  const Constraints inside = among(constraints, chosen);
-  pattern_ = order_with_last(chosen, inside, shared);
-  if (!factor_fits(pattern_, limits))
-    throw MemoryLimitError("the factor of a piece of the part is larger than its limits");
-  LowerMatrix matrix = assemble_stiffness(chosen, material, pattern_);
-  const std::vector<int> equation = equations_of(pattern_, free_components(inside, shared));
-  rank_.resize(equation.size());
-  std::iota(rank_.begin(), rank_.end(), 0);
-  std::sort(rank_.begin(), rank_.end(),
-            [&](int a, int b) { return equation[at(a)] < equation[at(b)]; });
-  Eigen::VectorXd added(static_cast<Eigen::Index>(rank_.size()));
-  for (const int k : rank_) {
-    double& diagonal = matrix.value[at(matrix.start[at(equation[at(k)])])];
-    added[static_cast<Eigen::Index>(equations_.size())] = diagonal;
-    diagonal *= 2.0;
-    equations_.push_back(equation[at(k)]);
-  }
-  factor_ = std::make_unique<CholeskyFactor>(pattern_, matrix);
-  corner_ = factor_->block(equations_);
-  Eigen::MatrixXd complement = Eigen::MatrixXd::Zero(corner_.rows(), corner_.cols());
-  complement.selfadjointView<Eigen::Lower>().rankUpdate(corner_);
-  complement.diagonal() -= added;
-  stiffness_.resize(complement.rows(), complement.cols());
-  stiffness_(rank_, rank_) = complement.selfadjointView<Eigen::Lower>().toDenseMatrix();
-}
+                           const std::vector<int>& shared, const FactorLimits& limits)
+    : pattern_(order_piece(chosen_elements(mesh, elements),
+                           among(constraints, chosen_elements(mesh, elements)), shared, limits)),
+      factor_(pattern_, assemble_stiffness(chosen_elements(mesh, elements), material, pattern_),
+              count_free(constraints, shared)) {}
 
 double Substructure::bytes() const {
-  const double dense = static_cast<double>(corner_.size() + stiffness_.size());
   const double indices = static_cast<double>(pattern_.neighbor.size() + pattern_.equation.size());
-  return sizeof(double) * (factor_->nonzeros() + dense) + sizeof(int) * indices;
+  return factor_.bytes() + sizeof(int) * indices;
 }
 
 double Substructure::operations() const { return pattern_.supernodes.operations; }
 
-Substructure::Condensed Substructure::condense(const Eigen::VectorXd& load) const {
-  Eigen::VectorXd forces = gather(pattern_, load);
-  forces(equations_).setZero();
-  Condensed result{factor_->solve_lower(forces), Eigen::VectorXd(stiffness_.rows())};
-  result.shared(rank_) = corner_.triangularView<Eigen::Lower>() * result.inner(equations_);
-  return result;
+Eigen::VectorXf Substructure::condense(const Eigen::VectorXd& load) const {
+  Eigen::VectorXf forces = gather(pattern_, load);
+  forces.tail(stiffness().rows()).setZero();
+  factor_.solve_lower(forces);
+  return forces;
 }
 
-void Substructure::expand(Condensed condensed, Eigen::VectorXd& u) const {
-  const Eigen::VectorXd shared = gather(pattern_, u)(equations_);
-  condensed.inner(equations_) = corner_.transpose().triangularView<Eigen::Upper>() * shared;
-  Eigen::VectorXd solution = factor_->solve_upper(condensed.inner);
-  solution(equations_) = shared;
-  scatter(pattern_, solution, u);
+void Substructure::expand(Eigen::VectorXf condensed, Eigen::VectorXd& u) const {
+  const Eigen::Index shared = stiffness().rows();
+  condensed.tail(shared) = gather(pattern_, u).tail(shared);
+  factor_.solve_upper(condensed);
+  scatter(pattern_, condensed, u);
+}
+
+double KeptElements::bytes() const {
+  return std::accumulate(pieces.begin(), pieces.end(), 0.0, [](double sum, const Piece& piece) {
+    return sum + piece.elements.bytes();
+  });
+}
+
+double KeptElements::operations() const {
+  return std::accumulate(pieces.begin(), pieces.end(), 0.0, [](double sum, const Piece& piece) {
+    return sum + piece.elements.operations();
+  });
 }
 
 std::shared_ptr<const KeptElements> keep_elements(const TetMesh& mesh, std::vector<char> reshaped,
                                                   const Material& material,
                                                   const Constraints& constraints,
                                                   const FactorLimits& limits) {
-  std::vector<char> others(reshaped.size());
-  std::transform(reshaped.begin(), reshaped.end(), others.begin(), [](char c) { return !c; });
   const TetMesh chosen = chosen_elements(mesh, reshaped);
   const std::vector<char> in_reshaped = nodes_of(chosen);
-  const std::vector<char> in_others = nodes_of(chosen_elements(mesh, others));
-  std::vector<int> shared;
-  for (std::size_t n = 0; n < in_others.size(); ++n)
-    if (in_reshaped[n] && in_others[n]) shared.push_back(static_cast<int>(n));
+  const std::vector<std::vector<char>> others = groups_of_others(mesh, reshaped);
+  CoupledNodes coupled;
+  for (const std::vector<char>& elements : others)
+    coupled.groups.push_back(shared_nodes(in_reshaped, nodes_of(chosen_elements(mesh, elements))));
   auto kept = std::make_shared<KeptElements>();
-  kept->rest =
-      std::make_unique<const Substructure>(mesh, others, material, constraints, shared, limits);
-  kept->pattern = order_with_last(chosen, among(constraints, chosen), shared);
-  kept->components = free_components(constraints, shared);
+  kept->pattern =
+      order_nodes(chosen, among(constraints, chosen), VertexOrdering::automatic, coupled);
+  for (std::size_t p = 0; p < others.size(); ++p) {
+    std::vector<int>& shared = coupled.groups[p];
+    std::sort(shared.begin(), shared.end(), [&](int a, int b) {
+      return kept->pattern.position[at(a)] < kept->pattern.position[at(b)];
+    });
+    kept->pieces.push_back({{mesh, others[p], material, constraints, shared, limits},
+                            free_components(constraints, shared)});
+  }
   kept->reshaped = std::move(reshaped);
   return kept;
 }
 
 CondensedFactor::CondensedFactor(std::shared_ptr<const KeptElements> kept, const TetMesh& mesh,
                                  const Material& material)
-    : kept_(std::move(kept)) {
-  const NodePattern& pattern = kept_->pattern;
-  LowerMatrix matrix =
-      assemble_stiffness(chosen_elements(mesh, kept_->reshaped), material, pattern);
-  add_full(kept_->rest->stiffness(), equations_of(pattern, kept_->components), matrix);
-  factor_ = std::make_unique<CholeskyFactor>(pattern, matrix);
-}
+    : kept_(std::move(kept)), factor_(factorize_reshaped(*kept_, mesh, material)) {}
 
 Eigen::VectorXd CondensedFactor::solve(const Eigen::VectorXd& load) const {
-  Substructure::Condensed rest = kept_->rest->condense(load);
   Eigen::VectorXd forces = load;
-  forces(kept_->components) += rest.shared;
+  std::vector<Eigen::VectorXf> condensed;
+  for (const KeptElements::Piece& piece : kept_->pieces) {
+    condensed.push_back(piece.elements.condense(load));
+    const auto shared = static_cast<Eigen::Index>(piece.components.size());
+    forces(piece.components) += condensed.back().tail(shared).cast<double>();
+  }
+  Eigen::VectorXf solution = gather(kept_->pattern, forces);
+  factor_.solve_lower(solution);
+  factor_.solve_upper(solution);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(load.size());
-  scatter(kept_->pattern, factor_->solve(gather(kept_->pattern, forces)), u);
-  kept_->rest->expand(std::move(rest), u);
+  scatter(kept_->pattern, solution, u);
+  for (std::size_t p = 0; p < kept_->pieces.size(); ++p)
+    kept_->pieces[p].elements.expand(std::move(condensed[p]), u);
   return u;
 }
 

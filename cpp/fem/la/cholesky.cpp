@@ -4,61 +4,15 @@
 
 #include <cmath>
 #include <cstddef>
-#include <mutex>
 #include <string>
 
 #include "errors.hpp"
 #include "fem/la/cholmod_view.hpp"
+#include "fem/la/one_thread.hpp"
 #include "fem/la/symbolic_factor.hpp"
 #include "interrupt.hpp"
 
-// Of OpenBLAS and OpenMP, where they are linked.
-extern "C" {
-int openblas_get_num_threads() __attribute__((weak));
-void openblas_set_num_threads(int threads) __attribute__((weak));
-int omp_get_max_active_levels() __attribute__((weak));
-void omp_set_max_active_levels(int levels) __attribute__((weak));
-}
-
 namespace codesign::fem {
-
-namespace {
-
-// Keeps BLAS and CHOLMOD on the calling thread while it lives: parallelism is between designs, and
-// waiting threads of a busy machine cost more than they give (measured: twice the time).
-// Of several at once the first one sets and the last one restores what belongs to the process.
-class OneThread {
- public:
-  OneThread() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (living_++ > 0) return;
-    if (openblas_get_num_threads && openblas_set_num_threads) {
-      blas_threads_ = openblas_get_num_threads();
-      if (blas_threads_ != 1) openblas_set_num_threads(1);
-    }
-  }
-  ~OneThread() {
-    if (omp_levels_ > 0) omp_set_max_active_levels(omp_levels_);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (--living_ == 0 && blas_threads_ > 1) openblas_set_num_threads(blas_threads_);
-  }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-
- private:
-  static int deactivate_omp() {  // a setting of the calling thread
-    if (!omp_get_max_active_levels || !omp_set_max_active_levels) return 0;
-    const int levels = omp_get_max_active_levels();
-    if (levels != 0) omp_set_max_active_levels(0);
-    return levels;
-  }
-
-  static inline std::mutex mutex_;
-  static inline int living_ = 0, blas_threads_ = 1;
-  int omp_levels_ = deactivate_omp();
-};
-
-}  // namespace
 
 namespace {
 

@@ -48,33 +48,61 @@ std::vector<int> order_graph(std::vector<int>& start, std::vector<int>& column, 
   return permutation;
 }
 
-bool is_last(const std::vector<char>& last, int node) { return !last.empty() && last[at(node)]; }
+// Which nodes are coupled.
+class Groups {
+ public:
+  Groups(const CoupledNodes& coupled, Eigen::Index nodes)
+      : coupled_(coupled), group_(static_cast<std::size_t>(nodes), -1), rank_(group_) {
+    int rank = 0;
+    for (std::size_t g = 0; g < coupled.groups.size(); ++g)
+      for (const int node : coupled.groups[g]) {
+        group_[at(node)] = static_cast<int>(g);
+        if (coupled.last) rank_[at(node)] = rank++;
+      }
+  }
+
+  bool is_last(int node) const { return rank_[at(node)] >= 0; }
+
+  // Place among those that are last; -1: another node.
+  int rank(int node) const { return rank_[at(node)]; }
+
+  // Those that the node is coupled with, itself among them.
+  const std::vector<int>& with(int node) const {
+    static const std::vector<int> none;
+    return group_[at(node)] < 0 ? none : coupled_.groups[at(group_[at(node)])];
+  }
+
+ private:
+  const CoupledNodes& coupled_;
+  std::vector<int> group_, rank_;  // (n) -1: none
+};
 
 // Rank of each free corner vertex in a fill-reducing order of the vertex graph; -1 for others.
 // Vertices that are to be last share the highest rank.
 std::vector<int> vertex_ranks(const TetMesh& mesh, const Constraints& constraints,
-                              const std::vector<char>& last, VertexOrdering method) {
+                              const Groups& groups, VertexOrdering method) {
   const Incidence elements = elements_of_nodes(mesh, 4);
   const int nodes = static_cast<int>(mesh.nodes.rows());
   std::vector<int> index(at(nodes), -1), vertex;
   for (int v = 0; v < nodes; ++v) {
     if (elements.start[at(v)] == elements.start[at(v) + 1] || !has_free_component(constraints, v))
       continue;
-    if (is_last(last, v)) continue;
+    if (groups.is_last(v)) continue;
     index[at(v)] = static_cast<int>(vertex.size());
     vertex.push_back(v);
   }
   std::vector<int> start{0}, column, seen(vertex.size(), -1);
   for (std::size_t k = 0; k < vertex.size(); ++k) {
     const int v = vertex[k];
-    for (int j = elements.start[at(v)]; j < elements.start[at(v) + 1]; ++j) {
-      for (int i = 0; i < 4; ++i) {
-        const int other = index[at(mesh.tets(elements.element[at(j)], i))];
-        if (other <= static_cast<int>(k) || seen[at(other)] == static_cast<int>(k)) continue;
-        seen[at(other)] = static_cast<int>(k);
-        column.push_back(other);
-      }
-    }
+    const auto add = [&](int node) {
+      const int other = index[at(node)];
+      if (other <= static_cast<int>(k) || seen[at(other)] == static_cast<int>(k)) return;
+      seen[at(other)] = static_cast<int>(k);
+      column.push_back(other);
+    };
+    for (int j = elements.start[at(v)]; j < elements.start[at(v) + 1]; ++j)
+      for (int i = 0; i < 4; ++i) add(mesh.tets(elements.element[at(j)], i));
+    for (const int node : groups.with(v)) add(node);
     start.push_back(static_cast<int>(column.size()));
   }
   const bool dissection = method == VertexOrdering::automatic
@@ -87,7 +115,7 @@ std::vector<int> vertex_ranks(const TetMesh& mesh, const Constraints& constraint
   }
   for (int v = 0; v < nodes; ++v) {
     const bool used = elements.start[at(v)] != elements.start[at(v) + 1];
-    if (used && is_last(last, v) && has_free_component(constraints, v))
+    if (used && groups.is_last(v) && has_free_component(constraints, v))
       rank[at(v)] = static_cast<int>(vertex.size());
   }
   return rank;
@@ -148,59 +176,58 @@ void set_positions(std::size_t nodes, NodePattern& pattern) {
   }
 }
 
-void find_neighbors(const TetMesh& mesh, const Incidence& elements, const std::vector<char>& last,
+void find_neighbors(const TetMesh& mesh, const Incidence& elements, const Groups& groups,
                     NodePattern& pattern) {
   std::vector<int> seen(pattern.order.size(), -1);
   pattern.start.assign(1, 0);
   pattern.neighbor.clear();
   for (int k = 0; k < pattern.positions(); ++k) {
     const int node = pattern.order[at(k)];
+    const auto add = [&](int position) {
+      if (position <= k || seen[at(position)] == k) return;
+      seen[at(position)] = k;
+      pattern.neighbor.push_back(position);
+    };
     for (int j = elements.start[at(node)]; j < elements.start[at(node) + 1]; ++j) {
       const int* tet = mesh.tets.row(elements.element[at(j)]).data();
-      for (int i = 0; i < kTetNodes; ++i) {
-        const int other = pattern.position[at(tet[i])];
-        if (other <= k || seen[at(other)] == k) continue;
-        seen[at(other)] = k;
-        pattern.neighbor.push_back(other);
-      }
+      for (int i = 0; i < kTetNodes; ++i) add(pattern.position[at(tet[i])]);
     }
-    for (int other = k + 1; is_last(last, node) && other < pattern.positions(); ++other) {
-      if (!is_last(last, pattern.order[at(other)]) || seen[at(other)] == k) continue;
-      pattern.neighbor.push_back(other);
-    }
+    for (const int other : groups.with(node)) add(pattern.position[at(other)]);
     std::sort(pattern.neighbor.begin() + pattern.start.back(), pattern.neighbor.end());
     pattern.start.push_back(static_cast<int>(pattern.neighbor.size()));
   }
 }
 
 // Positions, neighbors and equations of nodes in their order.
-void number(const TetMesh& mesh, const Constraints& constraints, const std::vector<char>& last,
+void number(const TetMesh& mesh, const Constraints& constraints, const Groups& groups,
             NodePattern& pattern) {
   set_positions(at(static_cast<int>(mesh.nodes.rows())), pattern);
-  find_neighbors(mesh, elements_of_nodes(mesh, kTetNodes), last, pattern);
+  find_neighbors(mesh, elements_of_nodes(mesh, kTetNodes), groups, pattern);
   number_equations(constraints, pattern);
 }
 
 }  // namespace
 
 NodePattern fill_reducing_order(const TetMesh& mesh, const Constraints& constraints,
-                                VertexOrdering method, const std::vector<char>& last) {
-  const std::vector<int> key = node_keys(mesh, vertex_ranks(mesh, constraints, last, method));
+                                VertexOrdering method, const CoupledNodes& coupled) {
+  const Groups groups(coupled, mesh.nodes.rows());
+  const std::vector<int> key = node_keys(mesh, vertex_ranks(mesh, constraints, groups, method));
   NodePattern pattern;
   for (int v = 0; v < mesh.nodes.rows(); ++v) {
     if (has_free_component(constraints, v)) pattern.order.push_back(v);
   }
   std::stable_sort(pattern.order.begin(), pattern.order.end(), [&](int a, int b) {
-    const bool last_a = is_last(last, a), last_b = is_last(last, b);
-    return last_a == last_b ? key[at(a)] < key[at(b)] : last_b;
+    const int last_a = groups.rank(a), last_b = groups.rank(b);
+    return last_a < 0 && last_b < 0 ? key[at(a)] < key[at(b)] : last_a < last_b;
   });
-  number(mesh, constraints, last, pattern);
+  number(mesh, constraints, groups, pattern);
   return pattern;
 }
 
 NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints, VertexOrdering method,
-                        const std::vector<char>& last) {
-  NodePattern pattern = fill_reducing_order(mesh, constraints, method, last);
+                        const CoupledNodes& coupled) {
+  const Groups groups(coupled, mesh.nodes.rows());
+  NodePattern pattern = fill_reducing_order(mesh, constraints, method, coupled);
   Elimination elimination =
       analyze(pattern.start, pattern.neighbor, free_components(constraints, pattern.order));
   std::vector<int> order;
@@ -208,7 +235,7 @@ NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints, Ver
   for (const int k : elimination.order) order.push_back(pattern.order[at(k)]);
   pattern.order = std::move(order);
   pattern.supernodes = std::move(elimination.supernodes);
-  number(mesh, constraints, last, pattern);
+  number(mesh, constraints, groups, pattern);
   return pattern;
 }
 

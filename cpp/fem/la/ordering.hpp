@@ -27,19 +27,24 @@ struct NodePattern {
 // How the fill of the factor is kept small.
 enum class VertexOrdering { automatic, minimum_degree, nested_dissection };
 
+// Nodes that a dense matrix couples beside the elements: each of a group with each other one.
+struct CoupledNodes {
+  std::vector<std::vector<int>> groups;  // no node is in two
+  bool last = false;                     // come after all other nodes, in the order given
+};
+
 // Fill-reducing order: only corner vertices are ordered (minimum degree, or nested dissection for
 // large meshes); each mid-edge node goes just before the earlier eliminated of its two ends.
 // Ordering the corners alone costs a tenth to a thirtieth of ordering all nodes and keeps the fill.
-// The pattern has no supernodes. Nodes flagged in `last`, (n) or empty, come after all others, and
-// the pattern couples each of them with every other one.
+// The pattern has no supernodes.
 NodePattern fill_reducing_order(const TetMesh& mesh, const Constraints& constraints,
                                 VertexOrdering method = VertexOrdering::automatic,
-                                const std::vector<char>& last = {});
+                                const CoupledNodes& coupled = {});
 
 // The fill-reducing order made one of the amalgamated supernodes' tree.
 NodePattern order_nodes(const TetMesh& mesh, const Constraints& constraints,
                         VertexOrdering method = VertexOrdering::automatic,
-                        const std::vector<char>& last = {});
+                        const CoupledNodes& coupled = {});
 
 // Values of the equations, a column each, as nodal components (3 n, k); zero where held.
 Eigen::MatrixXd nodal_columns(const NodePattern& pattern, const Eigen::MatrixXd& free);

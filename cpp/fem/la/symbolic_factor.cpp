@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "fem/la/factor_structure.hpp"
+
 // The fields filled below have the same names and types in CHOLMOD 3 to 5 (SuiteSparse 5 to 7).
 static_assert(CHOLMOD_MAIN_VERSION >= 3 && CHOLMOD_MAIN_VERSION <= 5,
               "compare cholmod_factor with symbolic_factor, or use cholmod_analyze_p instead");
@@ -15,67 +17,34 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// The arrays of a supernodal factor: first column, first row index and first entry of each
-// supernode, then the rows of all.
-struct Structure {
-  std::vector<int> super, pi, px, rows;
-  std::size_t entries = 0;
+// What CHOLMOD wants to know beside the rows.
+struct Extent {
+  std::vector<int> px;  // (s + 1) first entry of each supernode
   // Largest update of a later supernode by an earlier one, and most rows below a supernode.
   std::size_t max_update = 1, max_below = 1;
 };
 
-int degrees_of(const NodePattern& pattern, int first, int last) {
-  return pattern.dof_start[at(last)] - pattern.dof_start[at(first)];
-}
-
-// False where there are more entries than CHOLMOD's indices reach.
-bool count_entries(const NodePattern& pattern, Structure& out) {
-  const Supernodes& nodes = pattern.supernodes;
-  const std::size_t count = at(nodes.count());
-  out.super.resize(count + 1);
-  out.pi.assign(count + 1, 0);
-  out.px.assign(count + 1, 0);
-  for (std::size_t s = 0; s < count; ++s) {
-    const int columns = degrees_of(pattern, nodes.start[s], nodes.start[s + 1]);
-    int height = columns;
-    for (int p = nodes.row_start[s]; p < nodes.row_start[s + 1]; ++p)
-      height += degrees_of(pattern, nodes.row[at(p)], nodes.row[at(p)] + 1);
-    out.super[s] = pattern.dof_start[at(nodes.start[s])];
-    out.pi[s + 1] = out.pi[s] + height;
-    out.entries += at(height) * at(columns);
-    if (out.entries > std::numeric_limits<int>::max()) return false;
-    out.px[s + 1] = static_cast<int>(out.entries);
-  }
-  out.super[count] = pattern.equations();
-  return true;
-}
-
-void list_rows(const NodePattern& pattern, Structure& out) {
-  const Supernodes& nodes = pattern.supernodes;
-  const std::size_t count = at(nodes.count());
-  std::vector<int> supernode_of(at(pattern.positions()));
-  for (std::size_t s = 0; s < count; ++s)
-    for (int k = nodes.start[s]; k < nodes.start[s + 1]; ++k)
-      supernode_of[at(k)] = static_cast<int>(s);
-  out.rows.reserve(at(out.pi[count]));
-  for (std::size_t s = 0; s < count; ++s) {
-    for (int d = out.super[s]; d < out.super[s + 1]; ++d) out.rows.push_back(d);
-    std::size_t below = at(out.pi[s + 1] - out.pi[s] - (out.super[s + 1] - out.super[s]));
-    out.max_below = std::max(out.max_below, below);
-    int p = nodes.row_start[s];
-    while (p < nodes.row_start[s + 1]) {
-      const int target = supernode_of[at(nodes.row[at(p)])];
-      const std::size_t before = out.rows.size();
-      for (; p < nodes.row_start[s + 1] && supernode_of[at(nodes.row[at(p)])] == target; ++p) {
-        const int row = nodes.row[at(p)];
-        for (int d = pattern.dof_start[at(row)]; d < pattern.dof_start[at(row) + 1]; ++d)
-          out.rows.push_back(d);
-      }
-      const std::size_t wide = out.rows.size() - before;
+Extent extent_of(const FactorStructure& structure) {
+  Extent out;
+  std::vector<int> supernode_of(at(structure.first.back()));
+  for (int s = 0; s < structure.count(); ++s)
+    std::fill(supernode_of.begin() + structure.first[at(s)],
+              supernode_of.begin() + structure.first[at(s + 1)], s);
+  out.px.push_back(0);
+  for (int s = 0; s < structure.count(); ++s) {
+    const int *row = structure.rows(s) + structure.width(s),
+              *end = structure.rows(s) + structure.height(s);
+    out.px.push_back(out.px.back() + structure.width(s) * structure.height(s));
+    out.max_below = std::max(out.max_below, static_cast<std::size_t>(end - row));
+    while (row != end) {
+      const int target = supernode_of[at(*row)];
+      const auto below = static_cast<std::size_t>(end - row);
+      std::size_t wide = 0;
+      for (; row != end && supernode_of[at(*row)] == target; ++row) ++wide;
       out.max_update = std::max(out.max_update, wide * below);
-      below -= wide;
     }
   }
+  return out;
 }
 
 // A copy in CHOLMOD's own memory, as its factor frees it; null and a status where there is none.
@@ -88,12 +57,12 @@ void* copy_for_cholmod(const std::vector<int>& values, cholmod_common& common) {
 }  // namespace
 
 cholmod_factor* symbolic_factor(const NodePattern& pattern, cholmod_common& common) {
-  Structure structure;
-  if (!count_entries(pattern, structure)) {
+  if (pattern.supernodes.entries > std::numeric_limits<int>::max()) {
     common.status = CHOLMOD_TOO_LARGE;
     return nullptr;
   }
-  list_rows(pattern, structure);
+  const FactorStructure structure = factor_structure(pattern);
+  const Extent extent = extent_of(structure);
   cholmod_factor* l = cholmod_allocate_factor(at(pattern.equations()), &common);
   if (l == nullptr) return nullptr;
   l->ordering = CHOLMOD_NATURAL;
@@ -101,15 +70,15 @@ cholmod_factor* symbolic_factor(const NodePattern& pattern, cholmod_common& comm
   l->is_ll = 1;
   l->is_monotonic = 1;
   l->xtype = CHOLMOD_PATTERN;
-  l->nsuper = at(pattern.supernodes.count());
-  l->ssize = structure.rows.size();
-  l->xsize = structure.entries;
-  l->maxcsize = structure.max_update;
-  l->maxesize = structure.max_below;
-  l->super = copy_for_cholmod(structure.super, common);
-  l->pi = copy_for_cholmod(structure.pi, common);
-  l->px = copy_for_cholmod(structure.px, common);
-  l->s = copy_for_cholmod(structure.rows, common);
+  l->nsuper = at(structure.count());
+  l->ssize = structure.row.size();
+  l->xsize = at(extent.px.back());
+  l->maxcsize = extent.max_update;
+  l->maxesize = extent.max_below;
+  l->super = copy_for_cholmod(structure.first, common);
+  l->pi = copy_for_cholmod(structure.row_start, common);
+  l->px = copy_for_cholmod(extent.px, common);
+  l->s = copy_for_cholmod(structure.row, common);
   if (common.status != CHOLMOD_OK) cholmod_free_factor(&l, &common);
   return l;
 }

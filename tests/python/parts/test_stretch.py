@@ -11,9 +11,13 @@ import codesign
 from codesign import _core, fem
 from codesign.chain.chain import stress_settings
 from codesign.errors import GeometryError, MemoryLimitError
-from codesign.parts.load_case import part_case
+from codesign.geometry.profile import Resolution
+from codesign.geometry.shape import box
+from codesign.geometry.solid import build_solid
+from codesign.parts.load_case import held_faces, native_case, part_case
 from codesign.parts.part import Part
-from codesign.parts.stretch import RATIO, meshed_length
+from codesign.parts.stretch import RATIO, meshed_length, stretch_mm
+from codesign.parts.surface import surface_mesh
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -73,6 +77,24 @@ def test_a_material_has_its_own_factor() -> None:
     soft = replace(settings, material=fem.Material("soft", 1e9, ergal.poisson_ratio, ergal.density, 1e6))
     stiff, other = (_core.analyze_part(part_case(JetpackBracket(20.0, 60.0), s)).result for s in (settings, soft))
     assert other.max_displacement == pytest.approx(stiff.max_displacement * ergal.young_modulus / 1e9)
+
+
+def test_a_part_that_single_precision_does_not_resolve_is_solved_as_a_whole() -> None:
+    """A rod 330 times as long as it is thick, against the formula for its deflection."""
+    length, side, force, young = 0.7, 0.0021, 0.01, 70e9
+    rod = box((0.0, 0.0, 0.0), (1e3 * length, 1e3 * side, 1e3 * side), x0="root", x1="tip")
+    settings = stress_settings(codesign.load_study("ironcub_paper").config, "jetpack_bracket")
+    case = native_case(
+        replace(settings, cases=(), flown=(), material=fem.Material("aluminium", young, 0.0, 2700.0, 4e8)),
+        surface_mesh(build_solid(rod, Resolution(24))),
+        fem.SizeField(0.006, []),
+        held_faces(["root"]),
+        [fem.LoadCase("side", [fem.Force(fem.select_names("tip"), [0.0, 0.0, force])], 1.0)],
+        stretch=stretch_mm(np.zeros(3), np.array([1.0, 0.0, 0.0]), 200.0, 500.0, 0.0),
+    )
+    found = _core.analyze_part(case).result
+    assert found.residual < 1e-9
+    assert found.max_displacement == pytest.approx(force * length**3 / (3.0 * young * side**4 / 12.0), rel=5e-3)
 
 
 def test_a_limit_of_nothing_keeps_results() -> None:

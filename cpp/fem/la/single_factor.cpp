@@ -1,0 +1,203 @@
+#include "fem/la/single_factor.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "errors.hpp"
+#include "fem/la/one_thread.hpp"
+#include "interrupt.hpp"
+
+// Of BLAS and LAPACK.
+extern "C" {
+void spotrf_(const char* uplo, const int* n, float* a, const int* lda, int* info);
+void strsm_(const char* side, const char* uplo, const char* trans, const char* diagonal,
+            const int* m, const int* n, const float* alpha, const float* a, const int* lda,
+            float* b, const int* ldb);
+void ssyrk_(const char* uplo, const char* trans, const int* n, const int* k, const float* alpha,
+            const float* a, const int* lda, const float* beta, float* c, const int* ldc);
+void strsv_(const char* uplo, const char* trans, const char* diagonal, const int* n, const float* a,
+            const int* lda, float* x, const int* incx);
+void sgemv_(const char* trans, const int* m, const int* n, const float* alpha, const float* a,
+            const int* lda, const float* x, const int* incx, const float* beta, float* y,
+            const int* incy);
+}
+
+namespace codesign::fem {
+namespace {
+
+constexpr int kOne = 1;
+constexpr float kPlus = 1.0f, kMinus = -1.0f, kZero = 0.0f;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// Lower triangle of a symmetric matrix on ascending equations, wherever it is kept.
+struct Front {
+  const int* rows;
+  int size;
+  const float* value;  // (size, size)
+};
+
+}  // namespace
+
+// The work of the factorization. A supernode's front is its own columns, which become those of the
+// factor, and its update of later ones: a triangle of the rows below, on a stack until the
+// supernode that eliminates its first row takes it. A subtree's supernodes follow each other, so
+// what a supernode takes is on top.
+class SingleFactor::Elimination {
+ public:
+  Elimination(SingleFactor& factor, const NodePattern& pattern, const LowerMatrix& matrix,
+              const std::vector<DenseBlock>& blocks)
+      : factor_(factor),
+        structure_(factor.structure_),
+        matrix_(matrix),
+        kept_from_(pattern.equations() - factor.left_),
+        supernode_of_(at(pattern.equations())),
+        place_(at(pattern.equations())),
+        taken_(at(structure_.count())) {
+    for (int s = 0; s < structure_.count(); ++s)
+      std::fill(supernode_of_.begin() + structure_.first[at(s)],
+                supernode_of_.begin() + structure_.first[at(s + 1)], s);
+    for (const DenseBlock& block : blocks) hand_on(front_of(block));
+    for (int s = 0; s < structure_.count() && factor_.eliminated(s) > 0; ++s) eliminate(s);
+    for (int column = kept_from_; column < pattern.equations(); ++column) add_kept(column);
+  }
+
+ private:
+  static Front front_of(const DenseBlock& block) {
+    return {block.equations.data(), static_cast<int>(block.equations.size()), block.value.data()};
+  }
+
+  // To the supernode that eliminates the first row, or to the complement.
+  void hand_on(const Front& front) {
+    if (front.size == 0) return;
+    if (front.rows[0] < kept_from_) {
+      taken_[at(supernode_of_[at(front.rows[0])])].push_back(front);
+      return;
+    }
+    for (int j = 0; j < front.size; ++j)
+      for (int i = j; i < front.size; ++i)
+        factor_.complement_(front.rows[i] - kept_from_, front.rows[j] - kept_from_) +=
+            front.value[at(j) * at(front.size) + at(i)];
+  }
+
+  void add_kept(int column) {
+    for (int p = matrix_.start[at(column)]; p < matrix_.start[at(column + 1)]; ++p)
+      factor_.complement_(matrix_.row[at(p)] - kept_from_, column - kept_from_) +=
+          static_cast<float>(matrix_.value[at(p)]);
+  }
+
+  void eliminate(int s) {
+    const int height = structure_.height(s), width = factor_.eliminated(s), below = height - width;
+    const int* rows = structure_.rows(s);
+    for (int i = 0; i < height; ++i) place_[at(rows[i])] = i;
+    float* columns = factor_.value_.data() + factor_.start_[at(s)];
+    for (int j = 0; j < width; ++j) {
+      float* to = columns + at(j) * at(height);
+      for (int p = matrix_.start[at(rows[j])]; p < matrix_.start[at(rows[j] + 1)]; ++p)
+        to[place_[at(matrix_.row[at(p)])]] = static_cast<float>(matrix_.value[at(p)]);
+    }
+    update_.assign(at(below) * at(below), 0.0f);
+    for (const Front& front : taken_[at(s)]) take(front, columns, height, width);
+    int info = 0;
+    spotrf_("L", &width, columns, &height, &info);
+    if (info != 0) throw SolverError("a pivot is not positive in single precision");
+    drop_taken(s);
+    if (below == 0) return;
+    strsm_("R", "L", "T", "N", &below, &width, &kPlus, columns, &height, columns + width, &height);
+    ssyrk_("L", "N", &below, &width, &kMinus, columns + width, &height, &kPlus, update_.data(),
+           &below);
+    if (rows[width] < kept_from_) stack_.push_back(std::move(update_));
+    const float* update = rows[width] < kept_from_ ? stack_.back().data() : update_.data();
+    hand_on({rows + width, below, update});
+  }
+
+  // Adds a front to the supernode whose rows have been placed.
+  void take(const Front& front, float* columns, int height, int width) {
+    const int below = height - width;
+    for (int j = 0; j < front.size; ++j) {
+      const float* from = front.value + at(j) * at(front.size);
+      const int column = place_[at(front.rows[j])];
+      float* to = column < width ? columns + at(column) * at(height)
+                                 : update_.data() + at(column - width) * at(below) - width;
+      for (int i = j; i < front.size; ++i) to[place_[at(front.rows[i])]] += from[i];
+    }
+  }
+
+  void drop_taken(int s) {
+    while (!stack_.empty() &&
+           std::any_of(taken_[at(s)].begin(), taken_[at(s)].end(),
+                       [&](const Front& front) { return front.value == stack_.back().data(); }))
+      stack_.pop_back();
+    taken_[at(s)].clear();
+  }
+
+  SingleFactor& factor_;
+  const FactorStructure& structure_;
+  const LowerMatrix& matrix_;
+  int kept_from_;                          // first equation that is left
+  std::vector<int> supernode_of_, place_;  // of equations
+  std::vector<std::vector<Front>> taken_;  // by each supernode
+  std::vector<std::vector<float>> stack_;  // updates that wait
+  std::vector<float> update_;              // of the supernode at work
+};
+
+SingleFactor::SingleFactor(const NodePattern& pattern, const LowerMatrix& matrix, int left,
+                           const std::vector<DenseBlock>& blocks)
+    : structure_(factor_structure(pattern)),
+      left_(left),
+      complement_(Eigen::MatrixXf::Zero(left, left)) {
+  check_interrupt();
+  const OneThread guard;
+  start_.push_back(0);
+  for (int s = 0; s < structure_.count(); ++s)
+    start_.push_back(start_.back() + at(structure_.height(s)) * at(eliminated(s)));
+  value_.assign(start_.back(), 0.0f);
+  Elimination(*this, pattern, matrix, blocks);
+}
+
+int SingleFactor::eliminated(int supernode) const {
+  const int last = structure_.first.back() - left_;
+  return std::clamp(last - structure_.first[at(supernode)], 0, structure_.width(supernode));
+}
+
+void SingleFactor::solve_lower(Eigen::VectorXf& x) const {
+  const OneThread guard;
+  Eigen::VectorXf change(structure_.first.back());
+  for (int s = 0; s < structure_.count() && eliminated(s) > 0; ++s) {
+    const int height = structure_.height(s), width = eliminated(s), below = height - width;
+    const float* columns = value_.data() + start_[at(s)];
+    const int* rows = structure_.rows(s);
+    float* own = x.data() + structure_.first[at(s)];
+    strsv_("L", "N", "N", &width, columns, &height, own, &kOne);
+    if (below == 0) continue;
+    sgemv_("N", &below, &width, &kPlus, columns + width, &height, own, &kOne, &kZero, change.data(),
+           &kOne);
+    for (int i = 0; i < below; ++i) x[rows[width + i]] -= change[i];
+  }
+}
+
+void SingleFactor::solve_upper(Eigen::VectorXf& x) const {
+  const OneThread guard;
+  Eigen::VectorXf known(structure_.first.back());
+  for (int s = structure_.count() - 1; s >= 0; --s) {
+    const int height = structure_.height(s), width = eliminated(s), below = height - width;
+    if (width == 0) continue;
+    const float* columns = value_.data() + start_[at(s)];
+    const int* rows = structure_.rows(s);
+    float* own = x.data() + structure_.first[at(s)];
+    if (below > 0) {
+      for (int i = 0; i < below; ++i) known[i] = x[rows[width + i]];
+      sgemv_("T", &below, &width, &kMinus, columns + width, &height, known.data(), &kOne, &kPlus,
+             own, &kOne);
+    }
+    strsv_("L", "T", "N", &width, columns, &height, own, &kOne);
+  }
+}
+
+double SingleFactor::bytes() const {
+  return static_cast<double>(sizeof(float) * (value_.size() + at(left_) * at(left_)) +
+                             sizeof(int) * structure_.row.size());
+}
+
+}  // namespace codesign::fem
