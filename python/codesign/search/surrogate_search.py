@@ -22,6 +22,7 @@ from codesign.search.sampling import UnseenPoints, start_population
 from codesign.surrogate.coordinates import Coordinates
 from codesign.surrogate.likelihood import Hyperparameters
 from codesign.surrogate.models import DesignModels, fit_lengths, fit_models
+from codesign.surrogate.threads import one_thread
 
 if TYPE_CHECKING:
     from codesign.search.settings import Settings
@@ -62,7 +63,8 @@ class SurrogateSearch:
 
     def ask(self, count: int) -> list[Grid]:
         """The start population first (whatever `count`), then proposals."""
-        grids = self._propose(count) if self._taken else self._start
+        with one_thread():
+            grids = self._propose(count) if self._taken else self._start
         self._taken |= dict.fromkeys(grids)
         return list(grids)
 

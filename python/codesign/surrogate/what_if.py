@@ -14,6 +14,7 @@ from codesign.problem.evaluation import Evaluation
 from codesign.surrogate.coordinates import Coordinates
 from codesign.surrogate.gaussian_process import GaussianProcess
 from codesign.surrogate.outputs import CONSTANT, LEAST_LABEL_DEVIATION, Condition, Output, Scaling, has_objectives
+from codesign.surrogate.threads import one_thread
 
 Array = npt.NDArray[np.float64]
 Grid = tuple[int, ...]
@@ -120,7 +121,18 @@ class WhatIf:
 
         front: positions of the best compromises, which are always among the designs that models are made of.
         """
-        entries = chosen(len(evaluations), front)
+        with one_thread():
+            return cls._of(space, evaluations, chosen(len(evaluations), front), objectives, constraints)
+
+    @classmethod
+    def _of(
+        cls,
+        space: DesignSpace,
+        evaluations: Sequence[Evaluation],
+        entries: tuple[int, ...],
+        objectives: Sequence[str],
+        constraints: Sequence[str],
+    ) -> WhatIf | None:
         told = [evaluations[i] for i in entries]
         if not told:
             return None

@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import synthetic_run
+from codesign.search.settings import Settings
+from codesign.surrogate import gaussian_process
+from codesign.surrogate.likelihood import fit
 from codesign.surrogate.what_if import MOST_POINTS, WhatIf, chosen
 
 OBJECTIVES = ("momentum", "joint_velocity", "thrust")
@@ -69,3 +73,19 @@ def test_of_many_designs_the_front_is_kept():
     assert set(range(4000, 4100)) <= set(entries)
     assert entries[0] == 0
     assert chosen(3, [1]) == (0, 1, 2)
+
+
+def test_linear_algebra_has_one_thread(monkeypatch):
+    threads = set()
+
+    def watched(squares, values):
+        threads.update(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+        return fit(squares, values)
+
+    monkeypatch.setattr(gaussian_process, "fit", watched)
+    search = Settings(algorithm="surrogate", population=12).search(synthetic_run.SPACE, OBJECTIVES)
+    with threadpool_limits(2, "blas"):
+        assert WhatIf.of(synthetic_run.SPACE, RUN[:40], [], OBJECTIVES[:1], ()) is not None
+        search.tell(search.ask(12), RUN[:12])
+        assert len(search.ask(1)) == 1
+    assert threads == {1}
