@@ -8,7 +8,7 @@ import os
 from abc import ABC, abstractmethod
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from codesign.errors import GeometryError
 from codesign.geometry.exact import exact_moments, has_exact
@@ -17,7 +17,11 @@ from codesign.geometry.mesh_files import write_stl
 from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Shape, face_names
 from codesign.geometry.solid import Solid, build_solid
+from codesign.parts.stretch import require_prism, stretched
 from codesign.parts.surface import SurfaceMesh, surface_mesh
+
+if TYPE_CHECKING:
+    from codesign import _core
 
 _PARAMETER = "codesign.parameter"
 COARSE_RESOLUTION = Resolution(segments=24, chord_mm=0.12)  # of the coarsest mesh that mass is extrapolated from
@@ -99,6 +103,13 @@ class Part(ABC):
         """
         return {}
 
+    def stretched_from(self) -> tuple[Part, _core.Stretch] | None:
+        """A part that is this one when stretched where all its cross sections are equal; None: no other is.
+
+        Parts that are stretched from one share the meshes that masses and clearances are computed of.
+        """
+        return None
+
     def check(self) -> None:  # noqa: B027 (most parts need no more than the ranges of their parameters)
         """Refuses parameter values that give no sound part, by `limit`; called on construction."""
 
@@ -140,6 +151,13 @@ class Part(ABC):
     def surface(self, segments: int = 48) -> SurfaceMesh:
         """Closed surface in meters with named faces; `segments`: chords on a full circle (fewer on small ones)."""
         return surface_mesh(self.solid(Resolution(segments)))
+
+    def coarse_solid(self) -> Solid:
+        """Closed triangle mesh in mm with 24 chords on a full circle: the coarsest of those that the mass is made of.
+
+        Raises: GeometryError: as `solid`.
+        """
+        return _mesh(self, COARSE_RESOLUTION).tidied()
 
     def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> SurfaceMesh:
         """Closed surface in meters of the shape to be analyzed; `geometry` and `variant` as in `fem_shape`."""
@@ -190,6 +208,10 @@ class MirroredPart(Part):
         """The mirror image of the original's mesh."""
         return self.original.solid(resolution).mirrored(self.axis)
 
+    def coarse_solid(self) -> Solid:
+        """The mirror image of the original's."""
+        return self.original.coarse_solid().mirrored(self.axis)
+
     def mass_properties(self) -> MassProperties:
         """Those of the original, mirrored."""
         return self.original.mass_properties().mirrored(self.axis)
@@ -203,12 +225,23 @@ class MirroredPart(Part):
 @lru_cache(maxsize=8)
 def _solid(part: Part, resolution: Resolution) -> Solid:
     """Mesh of a part; the last ones are kept, since surface and files ask for the same."""
-    return _mesh(part, resolution).tidied()
+    return _checked(part.shape(), resolution, part.through_holes()).tidied()
 
 
-@lru_cache(maxsize=8)
 def _mesh(part: Part, resolution: Resolution) -> Solid:
-    """The same before it is tidied; the last ones are kept, since mass and clearances ask for the same."""
+    """The same before it is tidied, of the part itself or stretched from that of another."""
+    found = part.stretched_from()
+    if found is None:
+        return _made(part, resolution)
+    other, stretch = found
+    solid = _made(other, resolution)
+    require_prism(solid, stretch)
+    return stretched(solid, stretch)
+
+
+@lru_cache(maxsize=256)
+def _made(part: Part, resolution: Resolution) -> Solid:
+    """Mesh of a part as booleans leave it; kept (0.1 MB), since masses and clearances of many parts share it."""
     return _checked(part.shape(), resolution, part.through_holes())
 
 
@@ -227,16 +260,12 @@ def _moments(part: Part) -> Vector:
     """
     if has_exact(part.shape()):
         return exact_moments(part.shape())
-    coarse, fine = _solid_moments(_mesh(part, COARSE_RESOLUTION)), _refined_moments(part, 2)
-    return extrapolate(coarse, fine, None if settled(coarse, fine) else _refined_moments(part, 4))
+    coarse, fine = _mesh_moments(part, 1), _mesh_moments(part, 2)
+    return extrapolate(coarse, fine, None if settled(coarse, fine) else _mesh_moments(part, 4))
 
 
-def _refined_moments(part: Part, refine: int) -> Vector:
-    resolution = replace(COARSE_RESOLUTION, refine=refine)
-    return _solid_moments(_checked(part.shape(), resolution, part.through_holes()))
-
-
-def _solid_moments(solid: Solid) -> Vector:
+def _mesh_moments(part: Part, refine: int) -> Vector:
+    solid = _mesh(part, replace(COARSE_RESOLUTION, refine=refine))
     return volume_moments(solid.points, solid.triangles)
 
 

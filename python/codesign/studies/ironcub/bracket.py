@@ -257,17 +257,25 @@ class JetpackBracket(Part):
             mass_on=mass_on,
         )  # fmt: skip
 
+    def stretched_from(self) -> tuple[JetpackBracket, _core.Stretch] | None:
+        """The bracket with a slab of one of few lengths."""
+        return self._stretched(8.0, SEAT_RADIUS + 2.0)
+
+    def _stretched(self, start: float, before_seat: float) -> tuple[JetpackBracket, _core.Stretch] | None:
+        """As `stretched_from`, between distances from the crease and from the seat's center, in mm."""
+        zone = self.distance - before_seat - start
+        if zone < SHORTEST_ZONE:
+            return None
+        meshed = replace(self, distance=start + meshed_length(zone, TYPICAL_ZONE) + before_seat)
+        end, change = meshed.distance - before_seat, self.distance - meshed.distance
+        return meshed, stretch_mm(self.upper_crease, self.slab_direction, start, end, change)
+
     def _stretched_from(self, settings: StressSettings) -> tuple[JetpackBracket, _core.Stretch | None]:
         """The bracket that is meshed, and how its slab is stretched between creases and seat to be this one."""
         if settings.accuracy != "optimization" or settings.geometry == "full":
             return self, None
-        start, before_seat = (8.0, SEAT_RADIUS + 2.0) if self._has_seat(settings.geometry) else (14.0, 0.0)
-        zone = self.distance - before_seat - start
-        if zone < SHORTEST_ZONE:
-            return self, None
-        meshed = replace(self, distance=start + meshed_length(zone, TYPICAL_ZONE) + before_seat)
-        end, change = meshed.distance - before_seat, self.distance - meshed.distance
-        return meshed, stretch_mm(self.upper_crease, self.slab_direction, start, end, change)
+        found = self.stretched_from() if self._has_seat(settings.geometry) else self._stretched(14.0, 0.0)
+        return found or (self, None)
 
     @property
     def _half_floor_aside(self) -> Vector:

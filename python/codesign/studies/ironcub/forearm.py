@@ -261,16 +261,22 @@ class ForearmJetSupport(Part):
             stretch=stretch,
         )
 
-    def _stretched_from(self, settings: StressSettings) -> tuple[ForearmJetSupport, _core.Stretch | None]:
-        """The support that is meshed, and how its rod is stretched to be this one."""
+    def stretched_from(self) -> tuple[ForearmJetSupport, _core.Stretch] | None:
+        """The support with a rod of one of few lengths."""
         start, end = ROD_X - RELIEF_X + 2.0, self.fillet + 3.0  # from the rod's ends
         zone = self.length - start - end
-        if settings.accuracy != "optimization" or settings.geometry == "full" or zone < SHORTEST_ZONE:
-            return self, None
+        if zone < SHORTEST_ZONE:
+            return None
         meshed = replace(self, length=start + meshed_length(zone, TYPICAL_ZONE) + end)
         rod_start, _ = self.rod_ends
         along = np.array([-1.0, 0.0, 0.0])
         return meshed, stretch_mm(rod_start, along, start, meshed.length - end, self.length - meshed.length)
+
+    def _stretched_from(self, settings: StressSettings) -> tuple[ForearmJetSupport, _core.Stretch | None]:
+        """The support that is meshed, and how its rod is stretched to be this one."""
+        if settings.accuracy != "optimization" or settings.geometry == "full":
+            return self, None
+        return self.stretched_from() or (self, None)
 
     def _size_field(self, settings: StressSettings) -> fem.SizeField:
         """Arcs inside the fillets at the rod's ends, finest on the side of the ring; the rod itself; the relief."""
