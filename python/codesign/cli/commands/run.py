@@ -13,12 +13,14 @@ from codesign.cli.console import err, out, print_json, print_run, print_runs
 from codesign.cli.options import (
     DEFAULT_STUDY,
     INTERRUPTED,
+    STUDY_HELP,
     ClusterOption,
     JsonOption,
     NoCacheOption,
     RunArgument,
     StudyOption,
     WorkersOption,
+    complete_study,
 )
 from codesign.errors import StoreError, StudyError
 
@@ -269,3 +271,35 @@ def tolerances(
         print_tolerances(found)
         out.print(f"the report shows them: codesign report {run_dir}", soft_wrap=True)
     return 0
+
+
+@commands.command(epilog="Example: `codesign reevaluate runs/a --study ironcub_strength --out runs/flown`")
+def reevaluate(
+    run_dir: RunArgument,
+    study: Annotated[str, typer.Option("--study", "-s", help=STUDY_HELP, autocompletion=complete_study)],
+    out_dir: Annotated[Path, typer.Option("--out", help="New folder of the run.")],
+    designs: Annotated[
+        list[str] | None,
+        typer.Option(help="recommended, best, front, spread:N or a number; default: front."),
+    ] = None,
+    workers: WorkersOption = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Evaluates designs of a run under another study of the same variables (other loads, say), as a run of its own."""
+    from codesign.chain.study import load_study
+    from codesign.cli.extremes import print_extremes
+    from codesign.followup.other_study import DEFAULT_DESIGNS, evaluate_under, extremes
+    from codesign.search.progress import ProgressBar
+
+    loaded = load_study(study)
+    try:
+        with ProgressBar(loaded.name) as bar:
+            run = evaluate_under(
+                loaded, run_dir, designs or DEFAULT_DESIGNS, out=out_dir, workers=workers, progress=bar
+            )
+    except KeyboardInterrupt:
+        err.print(f"continue with: codesign resume {out_dir}")
+        return INTERRUPTED
+    if not as_json:
+        print_extremes(extremes(run))
+    return print_run(run, as_json)
