@@ -36,11 +36,12 @@ fem::PartCase make_case(fem::SurfaceMesh surface, fem::SizeField size, fem::Mate
 
 void bind_evaluate(py::module_& m) {
   py::class_<fem::LoadCase>(m, "LoadCase", "Loads that act together.")
-      .def(py::init<std::string, std::vector<fem::Load>, double>(), "name"_a, "loads"_a,
-           "least_safety_factor"_a = 1.0)
+      .def(py::init<std::string, std::vector<fem::Load>, double, bool>(), "name"_a, "loads"_a,
+           "least_safety_factor"_a = 1.0, "antisymmetric"_a = false)
       .def_readonly("name", &fem::LoadCase::name)
       .def_readonly("loads", &fem::LoadCase::loads)
-      .def_readonly("least_safety_factor", &fem::LoadCase::least_safety_factor);
+      .def_readonly("least_safety_factor", &fem::LoadCase::least_safety_factor)
+      .def_readonly("antisymmetric", &fem::LoadCase::antisymmetric);
   py::class_<fem::VaryingCase>(m, "VaryingCase", "Unit loads whose factors vary over time.")
       .def(py::init<std::string, std::vector<std::vector<fem::Load>>>(), "name"_a, "units"_a)
       .def_readonly("name", &fem::VaryingCase::name)

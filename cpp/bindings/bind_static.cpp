@@ -100,6 +100,8 @@ void bind_supports_and_loads(py::module_& m) {
       .def_readonly("symmetry", &Support::symmetry);
   py::class_<Disc>(m, "Disc").def(py::init<Eigen::Vector3d, Eigen::Vector3d, double>(), "center"_a,
                                   "axis"_a, "radius"_a);
+  py::class_<Plane>(m, "Plane")
+      .def(py::init<Eigen::Vector3d, Eigen::Vector3d>(), "point"_a, "normal"_a);
   bind_loads(m, static_cast<const Load*>(nullptr));
   m.def("load_vector", &load_vector, "mesh"_a, "material"_a, "loads"_a,
         py::call_guard<py::gil_scoped_release>());
@@ -107,8 +109,10 @@ void bind_supports_and_loads(py::module_& m) {
 
 void bind_masses(py::module_& m) {
   py::class_<RemoteMass>(m, "RemoteMass", "A rigid body that is carried by faces of a part.")
-      .def(py::init<Selection, double, Eigen::Vector3d, Eigen::Matrix3d, std::optional<Disc>>(),
-           "where"_a, "mass"_a, "position"_a, "inertia"_a, "region"_a = std::nullopt)
+      .def(py::init<Selection, double, Eigen::Vector3d, Eigen::Matrix3d, std::optional<Disc>,
+                    std::optional<Plane>>(),
+           "where"_a, "mass"_a, "position"_a, "inertia"_a, "region"_a = std::nullopt,
+           "mirror"_a = std::nullopt)
       .def_readonly("mass", &RemoteMass::mass)
       .def_readonly("position", &RemoteMass::position);
 }

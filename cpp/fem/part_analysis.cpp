@@ -76,14 +76,31 @@ MeshOptions pass_options(const PartCase& part, double seconds) {
   throw MemoryLimitError(text.str());
 }
 
-// Every load case by one factor, and which of them governs: the first where several are equal.
-void solve_cases(const PartCase& part, const StaticSystem& system, PartAnalysis& analysis) {
+bool any_antisymmetric(const PartCase& part) {
+  return std::any_of(part.cases.begin(), part.cases.end(),
+                     [](const LoadCase& load_case) { return load_case.antisymmetric; });
+}
+
+// The load cases of one kind, by the factor of a system that moves as they do.
+void solve_cases(const PartCase& part, const StaticSystem& system, bool antisymmetric,
+                 PartAnalysis& analysis) {
+  std::vector<std::size_t> chosen;
   std::vector<std::vector<Load>> loads;
-  for (const LoadCase& load_case : part.cases) {
-    loads.push_back(load_case.loads);
-    analysis.case_names.push_back(load_case.name);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < part.cases.size(); ++i) {
+    if (part.cases[i].antisymmetric != antisymmetric) continue;
+    chosen.push_back(i);
+    loads.push_back(part.cases[i].loads);
+    names.push_back(part.cases[i].name);
   }
-  analysis.results = system.solve_all(loads, analysis.case_names);
+  if (chosen.empty()) return;
+  std::vector<StaticResult> results = system.solve_all(loads, names);
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    analysis.results[chosen[i]] = std::move(results[i]);
+}
+
+// Which of the cases governs: the first where several are equal.
+void find_governing(const PartCase& part, PartAnalysis& analysis) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < part.cases.size(); ++i) {
     const double reserve = analysis.results[i].safety_factor / part.cases[i].least_safety_factor;
@@ -143,22 +160,31 @@ StaticSettings settings_of(const PartCase& part) {
   return settings;
 }
 
-// What stretching leaves of a mesh; nothing where it is not worth keeping.
-std::shared_ptr<const KeptElements> elements_of(const PartCase& part,
-                                                const std::shared_ptr<const TetMesh>& mesh) {
+// What stretching leaves of a mesh for the symmetric, or all, and the antisymmetric load cases;
+// nothing where it is not worth keeping or not needed.
+struct KeptParts {
+  std::shared_ptr<const KeptElements> symmetric, antisymmetric;
+};
+
+KeptParts elements_of(const PartCase& part, const std::shared_ptr<const TetMesh>& mesh) {
   FactorLimits limits = factor_limits(settings_of(part));
   limits.operations *= kDesignsServed;
-  return kept_elements(mesh, *part.stretch, part.material, constrain(*mesh, part.supports), limits);
+  const auto keep = [&](const std::vector<Support>& supports) {
+    return kept_elements(mesh, *part.stretch, part.material, constrain(*mesh, supports), limits);
+  };
+  KeptParts kept{keep(part.supports), nullptr};
+  if (any_antisymmetric(part)) kept.antisymmetric = keep(antisymmetric_supports(part));
+  return kept;
 }
 
 // The factor of the symmetric motions gives way to that of the antisymmetric ones.
-void solve(const PartCase& part, const std::shared_ptr<const KeptElements>& kept,
-           PartAnalysis& analysis) {
+void solve(const PartCase& part, const KeptParts& kept, PartAnalysis& analysis) {
   CaseFactors factors;
+  analysis.results.resize(part.cases.size());
   {
     const StaticSystem system(analysis.mesh, part.material, part.supports, settings_of(part),
-                              part.masses, kept);
-    solve_cases(part, system, analysis);
+                              part.masses, kept.symmetric);
+    solve_cases(part, system, false, analysis);
     for (const VaryingCase& varying : part.varying) {
       analysis.responses.push_back(system.unit_responses(varying.units));
     }
@@ -166,6 +192,12 @@ void solve(const PartCase& part, const std::shared_ptr<const KeptElements>& kept
     if (part.buckling > 0) factors = buckling_factors(part, system, analysis);
   }
   const std::vector<Support> turned = antisymmetric_supports(part);
+  if (any_antisymmetric(part)) {
+    const StaticSystem system(analysis.mesh, part.material, turned, settings_of(part), part.masses,
+                              kept.antisymmetric);
+    solve_cases(part, system, true, analysis);
+  }
+  find_governing(part, analysis);
   if (!turned.empty() && part.modes > 0) {
     const NaturalModes others =
         natural_modes(analysis.mesh, part.material, turned, part.modes, part.settings.memory_limit);
@@ -186,7 +218,7 @@ void solve_stretched(const PartCase& part, const std::shared_ptr<const TetMesh>&
   } catch (const SolverError&) {
     analysis = meshed;
   }
-  solve(part, nullptr, analysis);
+  solve(part, {}, analysis);
 }
 
 // One mesh and its solution; times are added to those of the passes before.
@@ -211,7 +243,7 @@ void try_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analys
   mesher_seconds += thread_seconds() - before;
   analysis.mesh_seconds += seconds_since(start);
   const Clock::time_point meshed = Clock::now();
-  kept ? solve_stretched(part, kept, analysis) : solve(part, nullptr, analysis);
+  kept ? solve_stretched(part, kept, analysis) : solve(part, {}, analysis);
   analysis.solve_seconds += seconds_since(meshed);
 }
 
@@ -239,6 +271,21 @@ SizeField refine_around(const SizeField& size, const Eigen::Vector3d& point) {
   return refined;
 }
 
+namespace {
+
+// What the half of a symmetric part can stand for.
+void check_half(const PartCase& part) {
+  const bool half = !antisymmetric_supports(part).empty();
+  if (part.settings.copies > 1 && !part.masses.empty() && part.modes > 0)
+    throw std::invalid_argument("modes: of a part with masses they are of the whole part");
+  if (!any_antisymmetric(part)) return;
+  if (!half) throw std::invalid_argument("antisymmetric: there is no half model");
+  if (part.buckling > 0)
+    throw std::invalid_argument("buckling: of an antisymmetric load it is of the whole part");
+}
+
+}  // namespace
+
 PartAnalysis analyze_part(const PartCase& part) {
   if (!(part.tolerance > 0)) throw std::invalid_argument("tolerance must be > 0");
   if (part.cases.empty()) throw std::invalid_argument("cases: a part needs a load case");
@@ -247,13 +294,11 @@ PartAnalysis analyze_part(const PartCase& part) {
       throw std::invalid_argument("least_safety_factor must be > 0");
     }
   }
-  if (!part.masses.empty() && part.settings.copies > 1) {
-    throw std::invalid_argument(
-        "masses: a half model takes no remote masses, analyze the whole part");
-  }
+  check_half(part);
   if (part.stretch && part.max_refinements > 0)
     throw std::invalid_argument("stretch: a refined mesh is made of the part's own surface");
   PartAnalysis analysis;
+  for (const LoadCase& load_case : part.cases) analysis.case_names.push_back(load_case.name);
   analysis.size = part.size;
   double mesher_seconds = 0.0;  // of the processor, all passes
   run_pass(part, mesher_seconds, analysis);
@@ -265,6 +310,7 @@ PartAnalysis analyze_part(const PartCase& part) {
   while (analysis.refinements < part.max_refinements &&
          !(analysis.converged && analysis.refinements > 0)) {
     PartAnalysis finer;
+    finer.case_names = analysis.case_names;
     finer.size = refine_around(analysis.size, analysis.result().peak_position);
     finer.refinements = analysis.refinements + 1;
     finer.mesh_seconds = analysis.mesh_seconds;

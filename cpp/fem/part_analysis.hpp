@@ -20,6 +20,7 @@ struct LoadCase {
   std::string name;
   std::vector<Load> loads;
   double least_safety_factor = 1.0;
+  bool antisymmetric = false;  // of a half model: the other half's load is the mirror image, turned
 };
 
 // A load case that varies: unit loads, whose factors over time are not known yet (a flight gives

@@ -139,6 +139,10 @@ bool inside(const std::optional<Disc>& region, const Eigen::Vector3d& x) {
   return (r - r.dot(axis) * axis).squaredNorm() <= region->radius * region->radius;
 }
 
+Eigen::Vector3d image(const Plane& mirror, const Eigen::Vector3d& x) {
+  return x - 2.0 * mirror.normal.dot(x - mirror.point) * mirror.normal;
+}
+
 // With t = a + b x r, r = x - point: force = A a + b x s and moment = s x a + J b, where A is the
 // area, s the first moment of r and J = integral of |r|² I - r rᵀ: six equations.
 void LoadAdder::operator()(const AffineTraction& load) const {
@@ -149,13 +153,15 @@ void LoadAdder::operator()(const AffineTraction& load) const {
   double area = 0.0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-  integrate_faces(mesh, triangles, rule, [&](int, const FacePoint& p, double weight) {
-    if (!inside(load.region, p.position)) return;
-    const Eigen::Vector3d r = p.position - load.point;
-    const double w = weight * p.area.norm();
+  const auto add = [&](const Eigen::Vector3d& r, double w) {
     area += w;
     first += w * r;
     second += w * r * r.transpose();
+  };
+  integrate_faces(mesh, triangles, rule, [&](int, const FacePoint& p, double weight) {
+    if (!inside(load.region, p.position)) return;
+    add(p.position - load.point, weight * p.area.norm());
+    if (load.mirror) add(image(*load.mirror, p.position) - load.point, weight * p.area.norm());
   });
   if (!(area > 0)) throw ModelError("the region of a load contains no surface");
 

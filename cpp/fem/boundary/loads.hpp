@@ -65,21 +65,31 @@ struct Disc {
   double radius = 0.0;
 };
 
+// Through point, a unit normal.
+struct Plane {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;
+};
+
 // The traction a + b x (x - x0) over the selected faces whose resultant is force (N) acting at
 // point and moment (N m) about it, both exact; of all tractions with this resultant the one with
-// the least mean square. A region limits it to the part of the faces inside a disc.
+// the least mean square. A region limits it to the part of the faces inside a disc. With a mirror
+// the faces are one half of the loaded ones, the other is their mirror image: the traction is that
+// on both, and the resultant is of both.
 struct AffineTraction {
   Selection where;
   Eigen::Vector3d force;
   Eigen::Vector3d point;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   std::optional<Disc> region;
+  std::optional<Plane> mirror;
   static constexpr const char* kName = "AffineTraction";
   static constexpr auto kMembers = std::tuple{LoadMember{"where", "", &AffineTraction::where},
                                               LoadMember{"force", "N", &AffineTraction::force},
                                               LoadMember{"point", "m", &AffineTraction::point},
                                               LoadMember{"moment", "N m", &AffineTraction::moment},
-                                              LoadMember{"region", "", &AffineTraction::region}};
+                                              LoadMember{"region", "", &AffineTraction::region},
+                                              LoadMember{"mirror", "", &AffineTraction::mirror}};
 };
 
 // Gravity-like field (m/s²), affine in the place x: acceleration + gradient (x - point). A body

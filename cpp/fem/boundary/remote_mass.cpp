@@ -21,7 +21,7 @@ AffineTraction pulled(const RemoteMass& body, const Acceleration& field) {
                                product(1, 0) - product(0, 1));
   const Eigen::Vector3d force =
       body.mass * (field.acceleration + field.gradient * (body.position - field.point));
-  return {body.where, force, body.position, moment, body.region};
+  return {body.where, force, body.position, moment, body.region, body.mirror};
 }
 
 // L with L Lᵀ = inertia.
@@ -70,9 +70,9 @@ Eigen::MatrixXd mass_columns(const TetMesh& mesh, const std::vector<RemoteMass>&
                 : Eigen::Vector3d(Eigen::Vector3d::Zero());
       const Eigen::Vector3d moment =
           k < 3 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(turning.col(k - 3));
-      columns.col(column++) =
-          load_vector(mesh, Material{},
-                      {AffineTraction{body.where, force, body.position, moment, body.region}});
+      columns.col(column++) = load_vector(
+          mesh, Material{},
+          {AffineTraction{body.where, force, body.position, moment, body.region, body.mirror}});
     }
   }
   return columns;

@@ -18,6 +18,7 @@ struct RemoteMass {
   Eigen::Vector3d position;                           // m, center of mass
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // kg m², about the center of mass
   std::optional<Disc> region;                         // of the faces, as of an AffineTraction
+  std::optional<Plane> mirror;                        // the same
 };
 
 // Throws std::invalid_argument: mass not positive, inertia not symmetric or negative.

@@ -46,7 +46,10 @@ class LoadCase:
             | fem.BodyForce
         ],
         least_safety_factor: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        antisymmetric: bool = False,
     ) -> None: ...
+    @property
+    def antisymmetric(self) -> bool: ...
     @property
     def least_safety_factor(self) -> float: ...
     @property

@@ -27,6 +27,7 @@ __all__: list[str] = [
     "MeshQuality",
     "MeshReport",
     "NaturalModes",
+    "Plane",
     "Pressure",
     "RemoteMass",
     "Selection",
@@ -484,6 +485,13 @@ class Disc:
         radius: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
 
+class Plane:
+    def __init__(
+        self,
+        point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+    ) -> None: ...
+
 class Force:
     def __init__(
         self, where: Selection, force: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
@@ -538,12 +546,15 @@ class AffineTraction:
         point: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         moment: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         region: Disc | None,
+        mirror: Plane | None,
     ) -> None: ...
     @property
     def force(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
         N
         """
+    @property
+    def mirror(self) -> Plane | None: ...
     @property
     def moment(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
         """
@@ -601,6 +612,7 @@ class RemoteMass:
         position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"],
         region: Disc | None = None,
+        mirror: Plane | None = None,
     ) -> None: ...
     @property
     def mass(self) -> float: ...

@@ -25,6 +25,7 @@ __all__ = [  # what codesign.fem offers of this module
     "Force",
     "Load",
     "LoadCase",
+    "Plane",
     "Pressure",
     "RemoteMass",
     "Traction",
@@ -92,6 +93,14 @@ class Disc:
 
 
 @dataclass(frozen=True)
+class Plane:
+    """Through `point` [m], with a unit normal."""
+
+    point: ArrayLike
+    normal: ArrayLike
+
+
+@dataclass(frozen=True)
 class AffineTraction:
     """A traction, affine over the faces, with an exact resultant.
 
@@ -100,6 +109,8 @@ class AffineTraction:
         force: net force [N], acting at `point` [m].
         moment: net moment about `point` [N m].
         region: limits the load to the part of the faces inside a disc.
+        mirror: the faces are one half of the loaded ones, the other half is their mirror image in this plane; force and
+            moment are those on both.
     """
 
     where: Where
@@ -107,12 +118,14 @@ class AffineTraction:
     point: ArrayLike
     moment: ArrayLike = (0.0, 0.0, 0.0)
     region: Disc | None = None
+    mirror: Plane | None = None
 
     def native(self, mesh: TetMesh | None) -> _core.AffineTraction:
         """The native value on a mesh."""
         region = _native_disc(self.region)
         force, point, moment = (vector(getattr(self, n), n) for n in ("force", "point", "moment"))
-        return _core.AffineTraction(resolve(mesh, self.where), force, point, moment, region)
+        mirror = _native_plane(self.mirror)
+        return _core.AffineTraction(resolve(mesh, self.where), force, point, moment, region, mirror)
 
 
 @dataclass(frozen=True)
@@ -158,6 +171,7 @@ class RemoteMass:
         position: center of mass [m].
         inertia: (3, 3) about the center of mass [kg m²].
         region: limits the faces to their part inside a disc.
+        mirror: the faces are one half of those that carry it; mass and inertia are the whole body's.
     """
 
     where: Where
@@ -165,6 +179,7 @@ class RemoteMass:
     position: ArrayLike
     inertia: ArrayLike = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     region: Disc | None = None
+    mirror: Plane | None = None
 
     def native(self, mesh: TetMesh | None) -> _core.RemoteMass:
         """The native value on a mesh."""
@@ -172,7 +187,8 @@ class RemoteMass:
         if inertia.shape != (3, 3):
             raise ValueError(f"inertia must have shape (3, 3), got {inertia.shape}")
         place = vector(self.position, "position")
-        return _core.RemoteMass(resolve(mesh, self.where), float(self.mass), place, inertia, _native_disc(self.region))
+        region, mirror = _native_disc(self.region), _native_plane(self.mirror)
+        return _core.RemoteMass(resolve(mesh, self.where), float(self.mass), place, inertia, region, mirror)
 
 
 Load = Force | Traction | Pressure | BearingLoad | AffineTraction | Acceleration | BodyForce
@@ -185,11 +201,16 @@ class LoadCase:
     name: str
     loads: Sequence[Load]
     safety_factor_min: float = 1.0
+    antisymmetric: bool = False  # of a half model: the other half's load is the mirror image, turned
 
 
 def native_loads(mesh: TetMesh | None, loads: Sequence[Load]) -> list[Any]:
     """Loads as the native solver takes them."""
     return [load.native(mesh) for load in loads]
+
+
+def _native_plane(plane: Plane | None) -> _core.Plane | None:
+    return None if plane is None else _core.Plane(vector(plane.point, "point"), vector(plane.normal, "normal"))
 
 
 def _native_disc(disc: Disc | None) -> _core.Disc | None:

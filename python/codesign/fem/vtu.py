@@ -43,17 +43,18 @@ class Field:
         """Names of the components."""
         return {"scalar": (), "vector": ("x", "y", "z"), "symmetric": ("xx", "yy", "zz", "xy", "yz", "zx")}[self.tensor]
 
-    def mirrored(self, normal: Array) -> Array:
-        """Values of the mirror image in a plane with this unit normal."""
+    def mirrored(self, normal: Array, antisymmetric: bool = False) -> Array:
+        """Values of the mirror image in a plane with this unit normal; antisymmetric: of the opposite sign."""
         if self.tensor == "scalar":
             return self.values
         turn = np.eye(3) - 2.0 * np.outer(normal, normal)
+        sign = -1.0 if antisymmetric else 1.0
         if self.tensor == "vector":
-            return np.asarray(self.values @ turn)
+            return np.asarray(sign * self.values @ turn)
         tensors = np.empty((len(self.values), 3, 3))
         rows, columns = VOIGT
         tensors[:, rows, columns] = tensors[:, columns, rows] = self.values
-        return np.asarray((turn @ tensors @ turn)[:, rows, columns])
+        return np.asarray(sign * (turn @ tensors @ turn)[:, rows, columns])
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,11 @@ class StressModel:
             (Field("error", np.array(result.element_error), "Pa"),),
         )
 
-    def with_mirror_image(self, point: Array, normal: Array) -> StressModel:
-        """The whole of which this is one half, cut by a plane: a point [m], a unit normal; nodes on it are shared."""
+    def with_mirror_image(self, point: Array, normal: Array, antisymmetric: bool = False) -> StressModel:
+        """The whole of which this is one half, cut by a plane: a point [m], a unit normal; nodes on it are shared.
+
+        antisymmetric: the load of the other half is the mirror image of this one's with the opposite sign.
+        """
         distance = (self.nodes - point) @ normal
         on_plane = np.abs(distance) < 1e-7 * np.ptp(self.nodes, axis=0).max()
         away = np.flatnonzero(~on_plane)
@@ -93,7 +97,10 @@ class StressModel:
         image[away] = len(self.nodes) + np.arange(len(away))
         nodes = np.concatenate((self.nodes, (self.nodes - 2.0 * np.outer(distance, normal))[away]))
         tets = np.concatenate((self.tets, image[self.tets][:, MIRRORED_NODES]))
-        at_nodes = [replace(f, values=np.concatenate((f.values, f.mirrored(normal)[away]))) for f in self.at_nodes]
+        at_nodes = [
+            replace(f, values=np.concatenate((f.values, f.mirrored(normal, antisymmetric)[away])))
+            for f in self.at_nodes
+        ]
         in_elements = [replace(f, values=np.concatenate((f.values, f.mirrored(normal)))) for f in self.in_elements]
         return StressModel(nodes, tets, tuple(at_nodes), tuple(in_elements))
 

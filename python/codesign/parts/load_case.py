@@ -368,7 +368,10 @@ def native_case(
         size=size,
         material=settings.material,
         supports=native_supports(None, supports),
-        cases=[_core.LoadCase(case.name, native_loads(None, case.loads), case.safety_factor_min) for case in cases],
+        cases=[
+            _core.LoadCase(case.name, native_loads(None, case.loads), case.safety_factor_min, case.antisymmetric)
+            for case in cases
+        ],
         settings=static,
         facet_angle_deg=facet_angle_deg,
         tolerance=settings.tolerance,

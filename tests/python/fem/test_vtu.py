@@ -98,6 +98,15 @@ def test_a_half_becomes_a_whole(half: tuple[fem.TetMesh, fem.StaticResult]) -> N
     assert len(whole.in_elements[0].values) == 2 * len(mesh.tets)
 
 
+def test_the_other_half_of_an_antisymmetric_load(half: tuple[fem.TetMesh, fem.StaticResult]) -> None:
+    model = StressModel.of(*half)
+    normal = np.array([0.0, -1.0, 0.0])
+    same, opposite = (model.with_mirror_image(np.zeros(3), normal, antisymmetric) for antisymmetric in (False, True))
+    for one, other in zip(same.at_nodes, opposite.at_nodes, strict=True):
+        sign = 1.0 if one.tensor == "scalar" else -1.0
+        np.testing.assert_array_equal(one.values[len(model.nodes) :], sign * other.values[len(model.nodes) :])
+
+
 def test_tensors_mirror_in_any_plane() -> None:
     rng = np.random.default_rng(0)
     normal = rng.normal(size=3)

@@ -196,7 +196,8 @@ def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnaly
     """
     config = order.study.configured(order.design)
     settings = stress_settings(config, name)
-    planes = _symmetry_planes(analysis.mesh, part_case(part, settings).supports)
+    case = part_case(part, settings)
+    planes = _symmetry_planes(analysis.mesh, case.supports)
     simplified = settings.geometry == "simplified" and part.fem_shape("simplified") != part.fem_shape("full")
     kind = "simplified" if simplified else "full"
     words = f"{kind} geometry" + (f", 1/{2 ** len(planes)} of the symmetric part" if planes else ", whole part")
@@ -216,7 +217,7 @@ def _write_stress(order: Order, name: str, part: Part, analysis: _core.PartAnaly
     write_vtu(model, folder / (f"{stem}_half.vtu" if planes else f"{stem}.vtu"), notes)
     if planes:
         for point, normal in planes:
-            model = model.with_mirror_image(point, normal)
+            model = model.with_mirror_image(point, normal, case.cases[analysis.governing].antisymmetric)
         write_vtu(model, folder / f"{stem}_whole.vtu", notes | {"model": f"{words}, and its mirror image"})
     return words
 

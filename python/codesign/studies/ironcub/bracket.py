@@ -15,7 +15,6 @@ from codesign.errors import GeometryError
 from codesign.geometry.profile import Path, Vector
 from codesign.geometry.shape import Extrusion, Frame, Shape, at_points, box, cylinder, polar, stepped_hole, union
 from codesign.parts.load_case import (
-    PartLoad,
     PressedFace,
     PushedFace,
     StressSettings,
@@ -25,11 +24,13 @@ from codesign.parts.load_case import (
 )
 from codesign.parts.part import Part, parameter
 from codesign.parts.stretch import meshed_length, stretch_mm
+from codesign.parts.symmetry import PLANE, Parity, is_symmetric, parity
 from codesign.units import MILLIMETER
 
 BASE = 15.0  # thickness of the base; the slab's is a field, see `thickness`
 HALF_WIDTH = 30.0
 LOWER_CREASE = 25.0  # x of the crease on the lower faces
+NECK_END, NECK_WIDTH, NECK_RADIUS = 20.0, 20.0, 5.0  # x where the neck's rounds end, half width
 SEAT_RADIUS, SEAT_DEPTH = 23.0, 1.0
 SEAT_HOLE_RADIUS = 1.6
 SEAT_HOLES = polar(19.7, 10.0, -10.0, 110.0, -110.0, 130.0, -130.0)
@@ -155,8 +156,9 @@ class JetpackBracket(Part):
             .line(self._upper_crease_x, BASE).line(-20.0, BASE, face=mount).close()
         )  # fmt: skip
         body = Extrusion(side, -HALF_WIDTH, HALF_WIDTH, Frame(x=(1.0, 0.0, 0.0), y=(0.0, 0.0, 1.0)))
+        x, w = NECK_END - NECK_RADIUS, NECK_WIDTH
         neck = (
-            Path(-21.0, 20.0).line(15.0, 20.0).arc(20.0, 25.0, center=(15.0, 25.0)).line(20.0, 31.0)
+            Path(-21.0, w).line(x, w).arc(NECK_END, w + NECK_RADIUS, center=(x, w + NECK_RADIUS)).line(NECK_END, 31.0)
             .line(-21.0, 31.0).close()
         )  # fmt: skip
         beside_neck = Extrusion(neck, -1.0, BASE)
@@ -221,35 +223,35 @@ class JetpackBracket(Part):
     half_width = HALF_WIDTH * MILLIMETER
 
     def stress_case(self, settings: StressSettings) -> _core.PartCase:
-        """The half y >= 0, or the whole part if a load is not symmetric; finest along both creases.
+        """The half y >= 0, or the whole part where that cannot stand for it; finest along both creases.
 
         Forces are tractions over the seat's disc, affine so that force and moment are exact. Total forces act at the
         center of the pocket's floor, or at the turbine's axis (`load = "thrust_line"`).
         """
         if settings.load not in ("uniform", "thrust_line"):
             raise GeometryError(f"{self.name}: load = {settings.load!r}: there are uniform and thrust_line")
-        half = not (settings.flown or settings.masses) and all(
-            _symmetric(load) for case in settings.cases for load in case.loads
-        )
+        half = _half_stands_for(settings)
         supports = list(settings.supports) if settings.support == "published" else ["pad", "screw_seat"]
         meshed, stretch = self._stretched_from(settings)
         surface = meshed.fem_surface(settings.geometry, settings.segments, support=settings.support, half=half)
         center = self.turbine_axis if settings.load == "thrust_line" else self.seat_center
         slab = fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
         disc = None if self._has_seat(settings.geometry) else slab
-        share, aside = (0.5, self._half_floor_aside) if half else (1.0, np.zeros(3))
+        mirror = PLANE if half else None
 
         def at_point(load: fem.AffineTraction) -> fem.Load:
-            force, point, moment = (np.asarray(value, dtype=float) for value in (load.force, load.point, load.moment))
-            return fem.AffineTraction(load.where, share * force, point + aside, share * moment, region=disc)
+            return replace(load, region=disc, mirror=mirror)
 
         def on_face(load: PressedFace | PushedFace) -> fem.Load:
             return at_point(fem.AffineTraction(load.face, load.along(self.slab_normal), center))
 
         def mass_on(mass: fem.RemoteMass) -> fem.RemoteMass:
-            return replace(mass, region=disc)
+            return replace(mass, region=disc, mirror=mirror)
 
-        cases = load_cases(settings, on_face, at_point)
+        cases = [
+            replace(case, antisymmetric=half and parity(given.loads) is Parity.ANTISYMMETRIC)
+            for case, given in zip(load_cases(settings, on_face, at_point), settings.cases, strict=True)
+        ]
         held = [*held_faces(supports), *([fem.Support("symmetry", axes="y", symmetry=True)] if half else [])]
         size = meshed._size_field(settings, half)
         return native_case(
@@ -277,13 +279,6 @@ class JetpackBracket(Part):
         found = self.stretched_from() if self._has_seat(settings.geometry) else self._stretched(14.0, 0.0)
         return found or (self, None)
 
-    @property
-    def _half_floor_aside(self) -> Vector:
-        """(3,) from the center of the pocket's floor to the centroid of its half y >= 0 [m]."""
-        floor = math.pi * SEAT_RADIUS**2 / 2.0 - len(SEAT_HOLES) / 2.0 * math.pi * SEAT_HOLE_RADIUS**2
-        moment = 2.0 / 3.0 * SEAT_RADIUS**3 - sum(y * math.pi * SEAT_HOLE_RADIUS**2 for _, y in SEAT_HOLES if y > 0.0)
-        return np.array([0.0, moment / floor, 0.0]) * MILLIMETER
-
     def _size_field(self, settings: StressSettings, half: bool) -> fem.SizeField:
         """Fine along lines 2 mm behind each crease, on the side away from the clamp; the peak is at the upper one."""
         fine = settings.accuracy != "optimization"
@@ -302,6 +297,7 @@ class JetpackBracket(Part):
         ]
         if self.seat_analyzed:
             sources += self._counterbore_sources(fine, half)
+            sources += self._neck_sources(half)
         return fem.SizeField(base * MILLIMETER, sources)
 
     def _counterbore_sources(self, fine: bool, half: bool) -> list[fem.SizeSource]:
@@ -318,14 +314,25 @@ class JetpackBracket(Part):
             sources.append(fem.SizeSource(points, size * MILLIMETER, growth, radius * MILLIMETER))
         return sources
 
+    def _neck_sources(self, half: bool) -> list[fem.SizeSource]:
+        """The neck's rounds beside the clamp, that bend where the turbine is pulled sideways."""
+        x = min(max(self._upper_crease_x + 1.0, NECK_END - NECK_RADIUS), NECK_END)
+        y = NECK_WIDTH + NECK_RADIUS - math.sqrt(NECK_RADIUS**2 - (x - NECK_END + NECK_RADIUS) ** 2)
+        sides = (1.0,) if half else (1.0, -1.0)
+        heights = np.array([BASE - 3.5, BASE - 1.5])
+        lines = [np.array([[x, side * y, z] for z in heights]) * MILLIMETER for side in sides]
+        return [fem.SizeSource(line, 0.8 * MILLIMETER, 0.5, 1.0 * MILLIMETER) for line in lines]
 
-def _symmetric(load: PartLoad) -> bool:
-    """Whether a load is its own mirror image in y = 0; a pressure is, since every face of the part is."""
-    if isinstance(load, PressedFace | fem.Pressure):
-        return True
-    if isinstance(load, PushedFace):
-        return load.force[1] == 0.0
-    if isinstance(load, fem.AffineTraction):
-        force, point, moment = (np.asarray(value, dtype=float) for value in (load.force, load.point, load.moment))
-        return bool(force[1] == point[1] == moment[0] == moment[2] == 0.0)
-    return False
+
+def _half_stands_for(settings: StressSettings) -> bool:
+    """Whether all that is asked of the part can be said of its half y >= 0.
+
+    A flight's loads are of no symmetry, and its modes with masses and its buckling under antisymmetric loads neither.
+    """
+    kinds = {parity(case.loads) for case in settings.cases}
+    if settings.flown or Parity.NEITHER in kinds:
+        return False
+    placed = [mass for mass in settings.masses if isinstance(mass, fem.RemoteMass)]
+    if placed and (settings.modes > 0 or not all(is_symmetric(mass) for mass in placed)):
+        return False
+    return settings.buckling == 0 or Parity.ANTISYMMETRIC not in kinds

@@ -51,6 +51,30 @@ Vector3d net_moment(const TetMesh& mesh, const Eigen::VectorXd& f, const Vector3
   return sum;
 }
 
+// On the half y >= 0.5 of a box, the loads of its nodes off the plane are those of the whole box,
+// whatever the symmetry of force and moment.
+TEST(Loads, AMirroredTractionIsHalfOfTheWhole) {
+  const TetMesh whole = box_mesh(2, 4, 2);
+  TetMesh half = box_mesh(2, 2, 2);
+  half.nodes.col(1) = (0.5 * half.nodes.col(1)).array() + 0.5;
+  const Vector3d force(1.0, 2.0, 3.0), point(0.2, 0.5, 1.3), moment(0.3, -0.4, 0.7);
+  const Plane plane{Vector3d(0.0, 0.5, 0.0), Vector3d::UnitY()};
+  const Eigen::VectorXd of_whole = load_vector(
+      whole, kMaterial, {AffineTraction{top_face(whole), force, point, moment, {}, {}}});
+  const Eigen::VectorXd of_half = load_vector(
+      half, kMaterial, {AffineTraction{top_face(half), force, point, moment, {}, plane}});
+  int compared = 0;
+  for (Eigen::Index n = 0; n < half.nodes.rows(); ++n) {
+    if (half.nodes(n, 1) < 0.5 + 1e-9) continue;
+    for (Eigen::Index m = 0; m < whole.nodes.rows(); ++m) {
+      if ((whole.nodes.row(m) - half.nodes.row(n)).norm() > 1e-9) continue;
+      EXPECT_LT((of_whole.segment<3>(3 * m) - of_half.segment<3>(3 * n)).norm(), 1e-12);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 50);
+}
+
 }  // namespace
 
 TEST(Loads, PressureOnACurvedFaceHasTheExactResultantOfItsBorder) {
@@ -96,7 +120,8 @@ TEST(Loads, AffineTractionThroughTheCentroidIsUniform) {
   const Vector3d force(1, 2, 3);
   const Eigen::VectorXd affine = load_vector(
       mesh, kMaterial,
-      {AffineTraction{top_face(mesh), force, {0.5, 0.5, 1}, Vector3d::Zero(), std::nullopt}});
+      {AffineTraction{
+          top_face(mesh), force, {0.5, 0.5, 1}, Vector3d::Zero(), std::nullopt, std::nullopt}});
   const Eigen::VectorXd uniform = load_vector(mesh, kMaterial, {Force{top_face(mesh), force}});
   EXPECT_LT((affine - uniform).norm(), 1e-14);
 }
