@@ -106,6 +106,28 @@ std::vector<std::vector<dynamics::Pose>> body_poses(const Array& poses, std::siz
   return made;
 }
 
+// Centers of the spheres around bodies, in the root's axes, by body and posture.
+std::vector<std::vector<Eigen::Vector3d>> body_centers(
+    const std::vector<dynamics::PiecewiseConvex>& bodies,
+    const std::vector<std::vector<dynamics::Pose>>& root_T_body) {
+  std::vector<std::vector<Eigen::Vector3d>> centers(bodies.size());
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const Eigen::Vector3d& center = bodies[k].sphere().center;
+    for (const dynamics::Pose& pose : root_T_body[k])
+      centers[k].push_back(pose.R * center + pose.p);
+  }
+  return centers;
+}
+
+// Whether two centers are nowhere as near to each other as that.
+bool stay_apart(const std::vector<Eigen::Vector3d>& first,
+                const std::vector<Eigen::Vector3d>& second, double distance) {
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if ((first[i] - second[i]).squaredNorm() < distance * distance) return false;
+  }
+  return true;
+}
+
 py::tuple nearest_approaches(const std::vector<std::vector<Array>>& bodies, const Array& poses,
                              const Numbers& pairs, double limit) {
   const std::vector<dynamics::PiecewiseConvex> made = convex_bodies(bodies);
@@ -118,10 +140,18 @@ py::tuple nearest_approaches(const std::vector<std::vector<Array>>& bodies, cons
   Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> postures(pairs.rows());
   {
     py::gil_scoped_release release;
+    const auto centers = body_centers(made, root_T_body);
     std::vector<dynamics::Pose> first_T_second;
     for (Eigen::Index k = 0; k < pairs.rows(); ++k) {
       const auto& first = root_T_body[pairs(k, 0)];
       const auto& second = root_T_body[pairs(k, 1)];
+      const double near =
+          limit + made[pairs(k, 0)].sphere().radius + made[pairs(k, 1)].sphere().radius;
+      if (near <= 0.0 || stay_apart(centers[pairs(k, 0)], centers[pairs(k, 1)], near)) {
+        distances[k] = limit;
+        postures[k] = 0;
+        continue;
+      }
       first_T_second.clear();
       for (std::size_t i = 0; i < first.size(); ++i) {
         first_T_second.push_back(dynamics::inverse(first[i]) * second[i]);

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 from typing import Annotated, Any
 
@@ -19,7 +20,7 @@ from codesign.dynamics import nearest_approaches
 from codesign.errors import StudyError, UrdfError
 from codesign.robot.assembly import PartPlacement, place_points
 from codesign.robot.description import RobotDescription
-from codesign.robot.hulls import axis_angle
+from codesign.robot.hulls import smallest_axis_angle
 from codesign.robot.urdf_elements import Shape
 from codesign.transforms import Matrix, inverse
 from codesign.units import DEGREE, MILLIMETER
@@ -216,7 +217,8 @@ def _body_pairs(
     ignored |= {frozenset((robot.joint(j).parent, robot.joint(j).child)) for j in robot.joint_names}
     pairs = {frozenset((body, link)) for body in settings.bodies for link in shapes if link != body} - ignored
     order = list(shapes)
-    numbers = sorted(sorted(order.index(name) for name in pair) for pair in pairs)
+    number = {name: k for k, name in enumerate(order)}
+    numbers = sorted(sorted(number[name] for name in pair) for pair in pairs)
     return [(order[i], order[j]) for i, j in numbers]
 
 
@@ -248,7 +250,7 @@ def pair_clearances(
 def _with_angle(found: Clearance, shapes: Mapping[str, Sequence[Matrix]], poses: Mapping[str, Matrix]) -> Clearance:
     """The clearance of a plume with its jet's name and the smallest angle to the link."""
     jet_T_link = inverse(poses[found.first][found.posture]) @ poses[found.second][found.posture]
-    angle = min(axis_angle(piece, jet_T_link) for piece in shapes[found.second])
+    angle = smallest_axis_angle(shapes[found.second], jet_T_link)
     return Clearance(found.first.removesuffix(PLUME), found.second, found.distance, found.posture, angle)
 
 
@@ -263,9 +265,19 @@ def _ring(radius: float, z: float) -> Matrix:
     return np.hstack([radius * _CIRCLE, np.full((CYLINDER_SIDES, 1), z)])
 
 
+@lru_cache(maxsize=512)
+def _cylinder_points(radius: float, length: float) -> Matrix:
+    """About the z axis; kept, as most of a robot is the same in every design."""
+    return np.vstack([_ring(radius, z) for z in (-0.5 * length, 0.5 * length)])
+
+
+@lru_cache(maxsize=1)
 def _sphere_points() -> Matrix:
     heights = np.sin(np.linspace(-np.pi / 2, np.pi / 2, CYLINDER_SIDES // 2 + 1))
     return np.vstack([_ring(np.sqrt(1.0 - z * z), z) for z in heights])
+
+
+_CUBE = np.array(list(product((-0.5, 0.5), repeat=3)))
 
 
 def shape_points(link: str, drawn: Shape, radius_scale: float = 1.0) -> Matrix:
@@ -275,10 +287,9 @@ def shape_points(link: str, drawn: Shape, radius_scale: float = 1.0) -> Matrix:
     """
     shape = drawn.geometry
     if shape.box is not None:
-        points = np.array(list(product((-0.5, 0.5), repeat=3))) * shape.box.size
+        points = _CUBE * shape.box.size
     elif shape.cylinder is not None:
-        half = 0.5 * shape.cylinder.length
-        points = np.vstack([_ring(radius_scale * shape.cylinder.radius, z) for z in (-half, half)])
+        points = _cylinder_points(radius_scale * shape.cylinder.radius, shape.cylinder.length)
     elif shape.sphere is not None:
         points = radius_scale * shape.sphere.radius * _sphere_points()
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -14,6 +15,7 @@ from codesign.errors import MeshError
 from codesign.transforms import Matrix
 
 Indices = NDArray[np.intp]
+ROUNDING = 1e-9  # rad
 
 
 def hull_vertices(points: Matrix) -> Matrix:
@@ -88,6 +90,28 @@ def _hull(points: bytes) -> _Hull:
     hull = ConvexHull(np.frombuffer(points).reshape(-1, 3))
     edges = np.vstack([hull.simplices[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))])
     return _Hull(hull.equations[:, :3], hull.equations[:, 3], edges, hull.vertices)
+
+
+def smallest_axis_angle(pieces: Sequence[Matrix], frame_T_points: Matrix) -> float:
+    """Smallest `axis_angle` [rad] of several pieces (n, 3), whose spheres bound theirs from below.
+
+    frame_T_points: (4, 4) pose of the points' frame.
+    """
+    bounds = [_least_axis_angle(piece, frame_T_points) for piece in pieces]
+    smallest = np.inf
+    for k in np.argsort(bounds, kind="stable"):
+        if bounds[k] > smallest + ROUNDING:
+            break
+        smallest = min(smallest, axis_angle(pieces[k], frame_T_points))
+    return float(smallest)
+
+
+def _least_axis_angle(points: Matrix, frame_T_points: Matrix) -> float:
+    """Angle [rad] between a frame's z axis and the sphere around the box of points (n, 3), seen from its origin."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    x, y, z = frame_T_points[:3, :3] @ (0.5 * (low + high)) + frame_T_points[:3, 3]
+    radius, distance = 0.5 * np.linalg.norm(high - low), np.sqrt(x * x + y * y + z * z)
+    return 0.0 if distance <= radius else float(np.arctan2(np.hypot(x, y), z) - np.arcsin(radius / distance))
 
 
 def axis_angle(points: Matrix, frame_T_points: Matrix | None = None) -> float:

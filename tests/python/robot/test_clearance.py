@@ -23,7 +23,7 @@ from codesign.robot.clearance import (
     telling_samples,
 )
 from codesign.robot.description import RobotDescription
-from codesign.robot.hulls import axis_angle, convex_pieces, hull_vertices
+from codesign.robot.hulls import axis_angle, convex_pieces, hull_vertices, smallest_axis_angle
 from codesign.studies import ironcub
 from codesign.studies.ironcub.forearm import ForearmJetSupport
 
@@ -176,6 +176,16 @@ def test_the_angle_to_a_box_is_that_to_its_nearest_edge():
     assert axis_angle(box - [0.0, 1.0, 0.0]) == 0.0
     behind = np.pi / 2 + np.arctan2(1.0, np.hypot(2.0, 1.0))  # its farthest corners from the axis
     assert axis_angle(box * [1.0, 1.0, -1.0]) == pytest.approx(behind, abs=1e-15)
+
+
+def test_the_smallest_angle_is_that_of_all_pieces():
+    generator = np.random.default_rng(8)
+    for _ in range(40):
+        pieces = [generator.normal(size=(12, 3)) * 0.3 + generator.normal(size=3) for _ in range(7)]
+        pose = np.eye(4)
+        pose[:3, :3] = Rotation.random(rng=generator).as_matrix()
+        pose[:3, 3] = 2.0 * generator.normal(size=3)
+        assert smallest_axis_angle(pieces, pose) == min(axis_angle(piece, pose) for piece in pieces)
 
 
 def test_convex_pieces_cover_the_part_and_nothing_far_from_it():
