@@ -21,7 +21,8 @@ namespace codesign::fem {
 namespace {
 
 constexpr int kMaxRefinements = 3;
-constexpr int kMaxGradients = 12;             // of a factor in single precision
+constexpr int kMaxGradients = 12;     // of a factor in single precision
+constexpr double kSuperposed = 1e-3;  // of the tolerance: for solutions whose sum may be small
 constexpr double kGradientTolerance = 1e-11;  // of conjugate gradients, see there
 constexpr int kMaxIterations = 500;
 // Multiply-adds of a factorization that takes as long as conjugate gradients on the same part.
@@ -130,8 +131,8 @@ struct StaticSystem::Data {
   }
 
   // Conjugate gradients on the elements, the condensed factor as preconditioner: adds to u what the
-  // load less internal forces asks for, and no more than that is promised of the residual.
-  void approach(const Eigen::VectorXd& load, const Eigen::VectorXd& internal,
+  // load less internal forces asks for, until the relative residual is below the tolerance.
+  void approach(const Eigen::VectorXd& load, const Eigen::VectorXd& internal, double tolerance,
                 Eigen::VectorXd& u) const {
     Eigen::VectorXd residual = felt(load - internal), direction;
     double scale = load.norm(), before = 0.0;
@@ -145,19 +146,20 @@ struct StaticSystem::Data {
       u += length * direction;
       residual -= length * felt(forces.sum);
       if (step == 0) scale = std::max(scale, length * forces.size.norm());
-      if (!(residual.norm() > part->settings.residual_tolerance * scale)) return;
+      if (!(residual.norm() > tolerance * scale)) return;
     }
   }
 
-  // Displacement with iterative refinement; internal is left as its internal forces.
+  // Displacement with iterative refinement; the condensed factor's is within a share of the
+  // tolerance. internal is left as its internal forces.
   Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal, double& residual,
-                           int& iterations) const {
+                           int& iterations, double share = 1.0) const {
     Eigen::VectorXd u = part->constraints.displacement;
     internal = u.isZero(0.0) ? u : internal_forces(part->mesh, part->material, u).sum;
     residual = 0.0;
     if (equations == 0) return u;
     if (load.isZero(0.0) && internal.isZero(0.0)) return u;
-    if (condensed) approach(load, internal, u);
+    if (condensed) approach(load, internal, share * part->settings.residual_tolerance, u);
     for (int step = 0; step <= kMaxRefinements; ++step) {
       if (!condensed || step > 0) u += solve_nodal(load - internal, iterations);
       InternalForces forces = internal_forces(part->mesh, part->material, u);
@@ -297,7 +299,7 @@ UnitResponses StaticSystem::unit_responses(const std::vector<std::vector<Load>>&
     Eigen::VectorXd internal;
     double residual = 0.0;
     int iterations = 0;
-    displacements.col(i) = d.displace(loads.col(i), internal, residual, iterations);
+    displacements.col(i) = d.displace(loads.col(i), internal, residual, iterations, kSuperposed);
     all.insert(all.end(), unit.begin(), unit.end());
   }
   return {d.part, loaded_triangles(part.mesh, all), std::move(displacements), std::move(loads)};
