@@ -1,4 +1,4 @@
-"""Commands about runs: optimize, resume, runs, report, validate, tolerances; and tables of parts."""
+"""Commands about runs: optimize, resume, runs, report, validate, confirm, reevaluate, tolerances; tables of parts."""
 
 from __future__ import annotations
 
