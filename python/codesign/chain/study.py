@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 from codesign.chain import chain, confirmed, lazy
 from codesign.chain.controllability import Controllability, grounded, study_controllability
+from codesign.chain.meshes import mesh_groups
+from codesign.errors import CodesignError
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignValue
 from codesign.study.loading import load
@@ -45,6 +47,18 @@ class Study(StudyData):
         if trajectory == confirmed.CONFIRMED:
             return confirmed.evaluate_confirmed(self, self.space.design(theta), cache)
         return chain.evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
+
+    @property
+    def mesh_groups(self) -> tuple[tuple[str, ...], ...]:
+        """For each part that is stretched from others the variables that decide from which; see `Part.stretched_from`.
+
+        Empty if the parts of the grid's first or middle design cannot be made.
+        """
+        first, middle = [0] * len(self.space.levels), [levels // 2 for levels in self.space.levels]
+        try:
+            return mesh_groups(self.config, [self.build_parts(self.space.from_indices(i)) for i in (first, middle)])
+        except CodesignError:
+            return ()
 
     def controllability(self, theta: Mapping[str, DesignValue] | Sequence[DesignValue]) -> Controllability:
         """What thrusts and joints can do for the robot with a design's parts, at the start posture."""

@@ -14,6 +14,7 @@ import tempfile
 import threading
 import time
 import uuid
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -121,6 +122,10 @@ class DaskExecutor:
             elif now - self._seen > NO_WORKERS_LIMIT:
                 raise ExecutionError(f"the cluster has had no worker for {NO_WORKERS_LIMIT:g} s")
         return self._threads * (1 + AHEAD) - len(self._futures)
+
+    def choose(self, waiting: Sequence[Task]) -> int:  # noqa: ARG002 - the protocol's
+        """The first: where tasks run is the scheduler's business."""
+        return 0
 
     def submit(self, task: Task) -> None:
         """Hands a task to the scheduler; those asked for earlier go first."""

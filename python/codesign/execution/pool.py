@@ -17,12 +17,14 @@ import sys
 import tempfile
 import time
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Protocol, Self
 
 from codesign.errors import ExecutionError
+from codesign.execution.affinity import LOOK, Groups, Key, best, keys_of
 from codesign.execution.worker import LENGTH, write_message
 from codesign.problem.design_space import DesignValue
 from codesign.problem.evaluation import Evaluation
@@ -44,17 +46,22 @@ ONE_THREAD = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", 
 
 @dataclass(frozen=True, slots=True)
 class StudyRef:
-    """How a worker finds the study, and the identity it must have there."""
+    """How a worker finds the study, and the identity it must have there; groups: what its meshes depend on."""
 
     source: str
     hash: str
     loader: str = DEFAULT_LOADER
     identity: Identity = field(default=Identity(), compare=False)
+    groups: Groups = field(default=(), compare=False)
 
     @classmethod
     def of(cls, study: Problem) -> StudyRef:
-        """Reference to a study object; its `loader` attribute, if any, names another `module:function`."""
-        return cls(study.source, study.hash, getattr(study, "loader", DEFAULT_LOADER), study.identity)
+        """Reference to a study object; its attribute `loader`, if any, names another `module:function`.
+
+        `mesh_groups`, if any: for each part the variables whose values name a mesh that workers keep.
+        """
+        loader, groups = getattr(study, "loader", DEFAULT_LOADER), getattr(study, "mesh_groups", ())
+        return cls(study.source, study.hash, loader, study.identity, groups)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +102,9 @@ class Executor(Protocol):
     def free(self) -> int:
         """How many more tasks can be handed over without queueing them for long."""
 
+    def choose(self, waiting: Sequence[Task]) -> int:
+        """Which of some tasks to hand over next; at least one, the longest waiting first."""
+
     def submit(self, task: Task) -> None:
         """Hands a task over; its outcome comes from `collect`, exactly once."""
 
@@ -118,6 +128,7 @@ class _Worker:
     task: Task | None = None
     deadline: float = float("inf")
     begun: float = 0.0
+    kept: set[Key] = field(default_factory=set)
 
     @property
     def name(self) -> str:
@@ -168,6 +179,14 @@ class LocalPool:
     def free(self) -> int:
         """Workers with nothing to do (those still starting included), less the tasks that wait for them."""
         return sum(worker.task is None for worker in self._workers) - len(self._waiting)
+
+    def choose(self, waiting: Sequence[Task]) -> int:
+        """The task that fits an idle worker best; none waits until more than LOOK others have gone before."""
+        idle = [k for k, worker in enumerate(self._workers) if worker.task is None]
+        if not self._study.groups or not idle:
+            return 0
+        near = [task for task in waiting[:LOOK] if task.number < waiting[0].number + LOOK]
+        return best([self._keys(task) for task in near], [worker.kept for worker in self._workers], idle)[0]
 
     def submit(self, task: Task) -> None:
         """Hands a task to an idle worker, or keeps it for the next one that is."""
@@ -222,16 +241,23 @@ class LocalPool:
         self._workers.append(worker)
 
     def _dispatch(self) -> None:
-        for worker in self._workers:
-            if not self._waiting:
+        while self._waiting:
+            idle = [k for k, worker in enumerate(self._workers) if worker.ready and worker.task is None]
+            if not idle:
                 return
-            if worker.ready and worker.task is None:
-                task = self._waiting.popleft()
-                worker.task, worker.begun = task, time.monotonic()
-                worker.deadline = worker.begun + self._limits.time_s if self._limits.time_s > 0 else float("inf")
-                assert worker.process.stdin is not None
-                with contextlib.suppress(BrokenPipeError):  # it has died: seen at its end of file
-                    write_message(worker.process.stdin, task.message())
+            task = self._waiting.popleft()
+            needed = self._keys(task)
+            _, number = best([needed], [worker.kept for worker in self._workers], idle)
+            worker = self._workers[number]
+            worker.kept |= needed
+            worker.task, worker.begun = task, time.monotonic()
+            worker.deadline = worker.begun + self._limits.time_s if self._limits.time_s > 0 else float("inf")
+            assert worker.process.stdin is not None
+            with contextlib.suppress(BrokenPipeError):  # it has died: seen at its end of file
+                write_message(worker.process.stdin, task.message())
+
+    def _keys(self, task: Task) -> frozenset[Key]:
+        return keys_of(task.design, self._study.groups)
 
     def _receive(self, worker: _Worker) -> None:
         assert worker.process.stdout is not None

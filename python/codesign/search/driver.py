@@ -60,13 +60,12 @@ class SearchDriver:
         self._numbers: dict[Grid, int] = {}
         self._told = 0
         self._rivals = Rivals(study.objectives) if plan.lazy and isinstance(study, LazyProblem) else None
-        self._rivals_of: dict[int, tuple[Rival, ...]] = {}  # by number, of those in the queue
         self._told_counts = {"feasible": 0, "infeasible": 0, "skipped": 0, "failed": 0}
         self._counts = dict(self._told_counts)
         for _, status in self._known.values():
             self._counts[status] += 1
         self._cached = 0
-        self._queue: deque[int] = deque()
+        self._queue: list[Task] = []  # by number
         self._running: set[int] = set()
         self._tracker = FrontTracker(study.objectives)
         self._generation: list[Evaluation] = []  # told since the last generation's end
@@ -205,9 +204,7 @@ class SearchDriver:
             for number, grid in new:
                 known = self._known_before(grid, rivals)
                 if known is None:
-                    self._queue.append(number)
-                    if rivals is not None:
-                        self._rivals_of[number] = rivals
+                    self._queue.append(Task(number, designs[grid], rivals=rivals))
                 else:
                     self._cached += 1
                     self._keep(Record(number, None, grid, "", known, cached=True))
@@ -231,10 +228,9 @@ class SearchDriver:
 
     def _hand_out(self, executor: Executor) -> None:
         while self._queue and executor.free() > 0:
-            number = self._queue.popleft()
-            self._running.add(number)
-            design = self._study.space.from_indices(self._grids[number]).to_dict()
-            executor.submit(Task(number, design, rivals=self._rivals_of.pop(number, None)))
+            task = self._queue.pop(executor.choose(self._queue))
+            self._running.add(task.number)
+            executor.submit(task)
         with self._store.transaction():
             self._store.mark([self._grids[number] for number in self._running], "running")
 
