@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from codesign.chain import chain, confirmed, lazy
 from codesign.chain.controllability import Controllability, grounded, study_controllability
-from codesign.chain.meshes import mesh_groups
 from codesign.errors import CodesignError
 from codesign.parts.part import Part
 from codesign.problem.design_space import DesignValue
 from codesign.study.loading import load
+from codesign.study.parts import mesh_groups
 from codesign.study.study import StudyData
 
 if TYPE_CHECKING:

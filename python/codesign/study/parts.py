@@ -33,6 +33,25 @@ def make_part(part: PartConfig, config: StudyConfig, part_class: type[Part], des
     return make(**parameters, **part.options, density=density)
 
 
+def mesh_groups(config: StudyConfig, made: Sequence[Mapping[str, Part]]) -> tuple[tuple[str, ...], ...]:
+    """For each part that is stretched from others the variables that decide from which; see `Part.stretched_from`.
+
+    made: parts of some designs by name. A parameter in which one of them differs from what it is stretched from is the
+    length that is stretched.
+    """
+    groups = []
+    for part in config.parts:
+        lengths: set[str] = set()
+        for parts in made:
+            own, found = parts[part.name], parts[part.name].stretched_from()
+            if found is not None:
+                lengths |= {name for name, value in own.parameters.items() if found[0].parameters[name] != value}
+        others = [variable for parameter, variable in part.parameters.items() if parameter not in lengths]
+        if lengths and others:
+            groups.append(tuple(dict.fromkeys(variable.partition(".")[0] for variable in others)))
+    return tuple(groups)
+
+
 def carried_bodies(part: PartConfig) -> dict[str, Inertial]:
     """What hangs on interfaces of a part, in their axes, as its masses say."""
     return {
