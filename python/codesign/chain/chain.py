@@ -171,7 +171,7 @@ def compute(
     settings = flight_settings(config.flight, find_trajectory(config, name))
     with refusals(study.path):
         seeds = flight_seeds(config, name)
-        result = _core.evaluate(cases, robot.to_text(), settings, seeds)
+        result = _core.evaluate(cases, robot.to_dynamics(), settings, seeds)
     return Computed(list(result.parts), list(result.flights), result.seconds, settings, tuple(seeds))
 
 

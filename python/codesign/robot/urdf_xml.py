@@ -69,6 +69,18 @@ def normalized(xml: ET.Element) -> ET.Element:
     return root
 
 
+def without_shapes(xml: ET.Element) -> str:
+    """Text of a robot without what it looks like and collides with."""
+    bare = ET.Element(xml.tag, xml.attrib)
+    for element in xml:
+        if element.tag == "link":
+            link = ET.SubElement(bare, "link", element.attrib)
+            link.extend(child for child in element if child.tag not in ("visual", "collision"))
+        elif element.tag != "material":
+            bare.append(element)
+    return ET.tostring(bare, encoding="unicode")
+
+
 def _shapes(element: ET.Element) -> Iterator[ET.Element]:
     """What stands for an element of a link."""
     if element.tag not in ("visual", "collision"):

@@ -59,6 +59,18 @@ def test_writes_back_what_it_read(robot, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a.urdf"]
 
 
+def test_what_flies_needs_no_shapes(robot):
+    bare = robot.to_dynamics()
+    assert "<visual" not in bare and "<collision" not in bare and "<gazebo" in bare
+    assert "<visual" in robot.to_text()  # the robot itself keeps them
+    again = RobotDescription.from_text(bare)
+    assert again.link_names == robot.link_names and again.moving_joint_names == robot.moving_joint_names
+    np.testing.assert_array_equal(again.inertial("base").inertia, robot.inertial("base").inertia)
+    heavy = robot.replace_inertial("tool", robot.inertial("arm"))
+    models = [dyn.load_urdf(text) for text in (heavy.to_text(), heavy.to_dynamics())]
+    assert models[0].total_mass == models[1].total_mass == 6.0
+
+
 def test_an_inertial_is_replaced_whole(robot):
     new = Inertial(1 / 3, [0.1, -0.2, 1e-17], [[0.3, 0.01, -0.02], [0.01, 0.4, 1 / 70], [-0.02, 1 / 70, 0.5]])
     edited = RobotDescription.from_text(robot.replace_inertial("arm", new).to_text())
