@@ -5,11 +5,14 @@
     python benchmarks/robustness/generated_meshes.py --kind series --out series.jsonl
     python benchmarks/robustness/generated_meshes.py --table generated.jsonl
     python benchmarks/robustness/generated_meshes.py --seeds 106,191,207 --most 0 --out generated.jsonl
+    python benchmarks/robustness/generated_meshes.py --reference earlier.jsonl --out generated.jsonl
 
 Writes a line of JSON for each part as it goes and skips what the file has already. A part is clamped at x = 0 and
 pushed down on its top faces. After all parts have their mesh, displacements are compared with those of refined meshes,
 the smallest first: all edge lengths times 0.6, or less until there are at least four times the elements; at most about
 `--most` of them, so that parts with large meshes have no comparison. `--seeds` runs only these, again if known.
+`--reference` is a log of an earlier revision: where its refined mesh has at least four times the elements of today's
+mesh, its displacement is taken; parts and their names are those of the same scripts.
 """
 
 from __future__ import annotations
@@ -119,12 +122,14 @@ def refined_mesh(surface: fem.SurfaceMesh, size: fem.SizeField, tetrahedra: int)
     return mesh
 
 
-def compare(part: GeneratedPart) -> Line:
-    """Displacements at default settings and with the refined mesh."""
+def compare(part: GeneratedPart, known: Line | None = None) -> Line:
+    """Displacements at default settings and with the refined mesh, or a `known` one if it has enough elements."""
     surface = part.surface()
     size = fem.default_size(surface)
     coarse = fem.tetrahedralize(surface, size)
     line: Line = {"tetrahedra": len(coarse.tets), "displacement_mm": 1e3 * displacement(coarse)}
+    if known and known.get("tetrahedra", 0) >= TIMES * len(coarse.tets):
+        return line | {"refined": known | {"earlier": True}}
     try:
         mesh = refined_mesh(surface, size, len(coarse.tets))
         refined = {"tetrahedra": len(mesh.tets), "displacement_mm": 1e3 * displacement(mesh)}
@@ -208,8 +213,11 @@ def parts_of(kind: str, seeds: Iterable[int]) -> dict[str, Part]:
     return {f"seed {seed}": lambda seed=seed: make(seed) for seed in seeds}  # type: ignore[misc]
 
 
-def run(parts: dict[str, Part], out: Path, most: int, again: bool) -> None:
-    """Meshes of the parts that the file lacks, or of all `again`, then refined ones, the smallest first."""
+def run(parts: dict[str, Part], out: Path, most: int, again: bool, earlier: dict[str, Line]) -> None:
+    """Meshes of the parts that the file lacks, or of all `again`, then refined ones, the smallest first.
+
+    Refined meshes of `earlier` lines are used where they are fine enough, whatever their size.
+    """
 
     def write(part: str, line: Line) -> None:
         with out.open("a") as file:
@@ -220,8 +228,10 @@ def run(parts: dict[str, Part], out: Path, most: int, again: bool) -> None:
             write(part, examine(make()))
     meshed = [line for part, line in read_lines(out).items() if part in parts and line["error"] is None]
     for line in sorted(meshed, key=lambda line: line["tetrahedra"]):
-        if not is_compared(line) and line["tetrahedra"] / FINER**3 <= most:
-            write(line["part"], compare(parts[line["part"]]()))
+        known = earlier.get(line["part"], {}).get("refined") or {}
+        small = line["tetrahedra"] / FINER**3 <= most
+        if not is_compared(line) and (small or known.get("tetrahedra", 0) >= TIMES * line["tetrahedra"]):
+            write(line["part"], compare(parts[line["part"]](), known))
 
 
 def main() -> None:
@@ -231,12 +241,14 @@ def main() -> None:
     parser.add_argument("--parts", type=int, default=300)
     parser.add_argument("--seeds", help="numbers with commas: these instead, again if known")
     parser.add_argument("--most", type=int, default=220_000, help="elements of a refined mesh that is solved")
+    parser.add_argument("--reference", type=Path, help="log of an earlier revision: its refined meshes, if fine enough")
     parser.add_argument("--out", type=Path, default=Path("generated.jsonl"))
     parser.add_argument("--table", type=Path)
     options = parser.parse_args()
     if options.table is None:
         seeds = map(int, options.seeds.split(",")) if options.seeds else range(options.parts)
-        run(parts_of(options.kind, seeds), options.out, options.most, again=options.seeds is not None)
+        earlier = read_lines(options.reference) if options.reference else {}
+        run(parts_of(options.kind, seeds), options.out, options.most, options.seeds is not None, earlier)
     print(summary(list(read_lines(options.table or options.out).values())))
 
 

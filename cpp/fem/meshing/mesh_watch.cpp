@@ -39,6 +39,9 @@ constexpr double kLeastOnWalls = 0.1;
 // ledges take many: those of 5 µm of the published forearm 450, with edges of 12 mm 1900.
 constexpr int kMostBalls = 10'000;
 
+// Elements are small in one place if they are smaller there than this share of the base.
+constexpr double kSmallShare = 0.7;
+
 constexpr std::chrono::milliseconds kAlarmPeriod{20};
 
 struct Crowd {
@@ -70,6 +73,24 @@ std::string format(const char* pattern, Values... values) {
   std::array<char, 320> text{};
   std::snprintf(text.data(), text.size(), pattern, values...);
   return text.data();
+}
+
+// What to do about a mesh that is too large everywhere, and where its elements are smallest.
+std::string too_fine(const std::vector<Vector3d>& points, const SizeField& size) {
+  double smallest = kSmallShare * size.base;
+  const Vector3d* place = nullptr;
+  for (const Vector3d& p : points)
+    if (const double wanted = size_at(size, p); wanted < smallest) {
+      smallest = wanted;
+      place = &p;
+    }
+  std::string text = format(", at %zu points", points.size());
+  if (place != nullptr)
+    text += format(
+        "; thin walls and gaps or refined places want elements of %.3g mm near (%.6g, %.6g, %.6g) "
+        "mm, of %.3g mm elsewhere",
+        smallest * 1e3, place->x() * 1e3, place->y() * 1e3, place->z() * 1e3, size.base * 1e3);
+  return text + ": a larger edge length is needed";
 }
 
 double seconds_of(clockid_t clock) {
@@ -157,8 +178,7 @@ void MeshWatch::report(Limit limit, const SizeField& size,
   const Crowd crowd = thickest_crowd(points, size);
   if (crowd.count < kCrowd ||
       static_cast<double>(crowd.count) < kCrowdShare * static_cast<double>(points.size()))
-    throw MeshLimitError(text +
-                         format(", at %zu points: a larger edge length is needed", points.size()));
+    throw MeshLimitError(text + too_fine(points, size));
   const Vector3d place = crowd.sum / static_cast<double>(crowd.count);
   throw MeshLimitError(
       text +

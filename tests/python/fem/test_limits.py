@@ -75,6 +75,16 @@ def test_a_mesh_that_is_too_large_as_a_whole_is_told_so():
     assert vertices > 1000
 
 
+def test_what_is_too_large_for_a_thin_gap_names_the_gap():
+    mesh = (fem_surfaces.box((20, 10, 10)) - fem_surfaces.box((20, 12, 0.4), (5, -1, 5))).to_mesh64()
+    surface = fem.SurfaceMesh(mesh.vert_properties[:, :3] * 1e-3, np.asarray(mesh.tri_verts, dtype=np.int32))
+    with pytest.raises(MeshLimitError, match=r"elements of 0\.34\d* mm near .*, of 1\.\d+ mm elsewhere") as error:
+        fem.tetrahedralize(surface, max_vertices=2000)
+    x, _, z = (float(n) for n in re.search(r"near \((.*), (.*), (.*)\) mm", str(error.value)).groups())
+    assert 5.0 - 0.1 <= x <= 20.0
+    assert 5.0 - 0.1 <= z <= 5.4 + 0.1
+
+
 def test_a_part_that_is_too_thin_everywhere_is_refused_at_once():
     sheet = fem_surfaces.box((40, 20, 1e-5))
     mesh = sheet.to_mesh64()
