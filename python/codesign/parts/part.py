@@ -17,7 +17,6 @@ from codesign.geometry.mesh_files import write_stl
 from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Shape, face_names
 from codesign.geometry.solid import Solid, build_solid
-from codesign.parts.stretch import require_prism, stretched
 from codesign.parts.surface import SurfaceMesh, surface_mesh
 
 if TYPE_CHECKING:
@@ -106,7 +105,7 @@ class Part(ABC):
     def stretched_from(self) -> tuple[Part, _core.Stretch] | None:
         """A part that is this one when stretched where all its cross sections are equal; None: no other is.
 
-        Parts that are stretched from one share the meshes that masses and clearances are computed of.
+        Parts that are stretched from one share meshes in their `stress_case`, and a worker takes them by preference.
         """
         return None
 
@@ -225,23 +224,12 @@ class MirroredPart(Part):
 @lru_cache(maxsize=8)
 def _solid(part: Part, resolution: Resolution) -> Solid:
     """Mesh of a part; the last ones are kept, since surface and files ask for the same."""
-    return _checked(part.shape(), resolution, part.through_holes()).tidied()
+    return _mesh(part, resolution).tidied()
 
 
+@lru_cache(maxsize=16)
 def _mesh(part: Part, resolution: Resolution) -> Solid:
-    """The same before it is tidied, of the part itself or stretched from that of another."""
-    found = part.stretched_from()
-    if found is None:
-        return _made(part, resolution)
-    other, stretch = found
-    solid = _made(other, resolution)
-    require_prism(solid, stretch)
-    return stretched(solid, stretch)
-
-
-@lru_cache(maxsize=256)
-def _made(part: Part, resolution: Resolution) -> Solid:
-    """Mesh of a part as booleans leave it; kept (0.1 MB), since masses and clearances of many parts share it."""
+    """The same before it is tidied; the last ones are kept, since mass and clearances ask for the same."""
     return _checked(part.shape(), resolution, part.through_holes())
 
 

@@ -14,10 +14,9 @@ from codesign.errors import GeometryError, MemoryLimitError
 from codesign.geometry.profile import Resolution
 from codesign.geometry.shape import box
 from codesign.geometry.solid import build_solid
-from codesign.parts import part as part_module
 from codesign.parts.load_case import held_faces, native_case, part_case
-from codesign.parts.part import Part, _moments
-from codesign.parts.stretch import RATIO, meshed_length, require_prism, stretch_mm
+from codesign.parts.part import Part
+from codesign.parts.stretch import RATIO, meshed_length, stretch_mm
 from codesign.parts.surface import surface_mesh
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
@@ -138,36 +137,3 @@ def test_a_refined_mesh_is_of_the_parts_own_surface() -> None:
     case.max_refinements = 1
     with pytest.raises(ValueError, match="own surface"):
         _core.analyze_part(case)
-
-
-@pytest.mark.parametrize("part", [JetpackBracket(37.0, 56.0), *LONG_AND_SHORT], ids=lambda part: part.title)
-def test_masses_and_solids_of_stretched_parts_are_their_own(part: Part, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert part.stretched_from() is not None
-    found, solid = part.mass_properties(), part.coarse_solid()
-    monkeypatch.setattr(type(part), "stretched_from", Part.stretched_from)
-    _moments.cache_clear()
-    direct, own = part.mass_properties(), part.coarse_solid()
-    assert found.mass == pytest.approx(direct.mass, rel=1e-12)
-    assert np.allclose(found.com, direct.com, rtol=0.0, atol=1e-13)
-    assert np.allclose(found.inertia, direct.inertia, rtol=0.0, atol=1e-12 * np.trace(direct.inertia))
-    assert solid.names == own.names and len(solid.points) == len(own.points)
-    assert np.allclose(np.sort(solid.points, axis=0), np.sort(own.points, axis=0), rtol=0.0, atol=1e-10)
-
-
-def test_a_mesh_serves_all_lengths(monkeypatch: pytest.MonkeyPatch) -> None:
-    JetpackBracket(23.5, 60.0).mass_properties()
-    monkeypatch.setattr(part_module, "build_solid", None)  # no other is made
-    for distance in (63.0, 71.0, 118.0):
-        JetpackBracket(23.5, distance).mass_properties()
-        JetpackBracket(23.5, distance).mirrored("y", "left").coarse_solid()
-
-
-def test_a_zone_whose_sections_differ_is_refused() -> None:
-    wedge = build_solid(
-        box((0.0, 0.0, 0.0), (30.0, 10.0, 10.0)) - box((0.0, 0.0, 8.0), (30.0, 10.0, 20.0)).rotated("y", 3.0),
-        Resolution(24),
-    )
-    zone = stretch_mm(np.zeros(3), np.array([1.0, 0.0, 0.0]), 10.0, 20.0, 5.0)
-    require_prism(build_solid(box((0.0, 0.0, 0.0), (30.0, 10.0, 10.0)), Resolution(24)), zone)
-    with pytest.raises(GeometryError, match="from 10 to 20 mm, has cross sections that differ"):
-        require_prism(wedge, zone)
