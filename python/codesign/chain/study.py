@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,7 +49,7 @@ class Study(StudyData):
             return confirmed.evaluate_confirmed(self, self.space.design(theta), cache)
         return chain.evaluate(self, self.space.design(theta), trajectory=trajectory, cache=cache)
 
-    @property
+    @functools.cached_property
     def mesh_groups(self) -> tuple[tuple[str, ...], ...]:
         """For each part that is stretched from others the variables that decide from which; see `Part.stretched_from`.
 

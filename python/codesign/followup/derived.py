@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from codesign.errors import DesignError
+from codesign.execution.affinity import Groups
 from codesign.execution.pool import StudyRef
 from codesign.execution.worker import load
 from codesign.problem.design_space import DesignSpace, DesignValue
@@ -53,6 +54,11 @@ class DerivedStudy:
     def space(self) -> DesignSpace:
         """As the study's."""
         return self.study.space
+
+    @property
+    def mesh_groups(self) -> Groups:
+        """As the study's."""
+        return StudyRef.of(self.study).groups
 
     @property
     def objectives(self) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Unpack
@@ -93,12 +93,12 @@ def _evaluate(
     designs = [study.space.from_indices(grid).to_dict() for grid, _ in pairs]
     for (grid, trajectory), design in zip(pairs, designs, strict=True):
         store.enqueue([(None, None, grid, design)], study.hash, trajectory)
-    queue = deque(Task(n, designs[n], trajectory) for n, (_, trajectory) in enumerate(pairs))
+    queue = [Task(n, designs[n], trajectory) for n, (_, trajectory) in enumerate(pairs)]
     counts: Counter[str] = Counter()
     began, running, notify = time.monotonic(), 0, resources.get("progress")
     while queue or running:
         while queue and executor.free() > 0:
-            executor.submit(queue.popleft())
+            executor.submit(queue.pop(executor.choose(queue)))
             running += 1
         for outcome in executor.collect(WAIT):
             grid, trajectory = pairs[outcome.task.number]
