@@ -7,6 +7,7 @@
 
 #include "errors.hpp"
 #include "fem/boundary/rigid_motions.hpp"
+#include "fem/elasticity/condensed_solution.hpp"
 #include "fem/elasticity/held_part.hpp"
 #include "fem/elasticity/nodal_matrices.hpp"
 #include "fem/elasticity/stiffness.hpp"
@@ -21,7 +22,6 @@ namespace codesign::fem {
 namespace {
 
 constexpr int kMaxRefinements = 3;
-constexpr int kMaxGradients = 12;     // of a factor in single precision
 constexpr double kSuperposed = 1e-3;  // of the tolerance: for solutions whose sum may be small
 constexpr double kGradientTolerance = 1e-11;  // of conjugate gradients, see there
 constexpr int kMaxIterations = 500;
@@ -67,16 +67,6 @@ bool solves_directly(const NodePattern& pattern, const StaticSettings& settings)
 FactorLimits factor_limits(const StaticSettings& settings) {
   return {settings.memory_limit, settings.solutions * kDirectOperations};
 }
-
-namespace {
-
-struct Solution {
-  Response response;
-  double residual = 0.0;
-  int iterations = 0;
-};
-
-}  // namespace
 
 struct StaticSystem::Data {
   std::shared_ptr<const HeldPart> part;
@@ -130,60 +120,60 @@ struct StaticSystem::Data {
     return free;
   }
 
-  // Conjugate gradients on the elements, the condensed factor as preconditioner: adds to u what the
-  // load less internal forces asks for, until the relative residual is below the tolerance.
-  void approach(const Eigen::VectorXd& load, const Eigen::VectorXd& internal, double tolerance,
-                Eigen::VectorXd& u) const {
-    Eigen::VectorXd residual = felt(load - internal), direction;
-    double scale = load.norm(), before = 0.0;
-    for (int step = 0; step < kMaxGradients; ++step) {
-      const Eigen::VectorXd preconditioned = condensed->solve(residual);
-      const double descent = residual.dot(preconditioned);
-      direction = step == 0 ? preconditioned : preconditioned + descent / before * direction;
-      before = descent;
-      const InternalForces forces = internal_forces(part->mesh, part->material, direction);
-      const double length = descent / direction.dot(forces.sum);
-      u += length * direction;
-      residual -= length * felt(forces.sum);
-      if (step == 0) scale = std::max(scale, length * forces.size.norm());
-      if (!(residual.norm() > tolerance * scale)) return;
+  // One column of loads: (3 n) N, and what they do.
+  struct Displaced {
+    Eigen::VectorXd displacement, internal;
+    double residual = 0.0;
+    int iterations = 0;
+  };
+
+  // Displacements with iterative refinement, each column as it would be alone; a condensed factor's
+  // are within a share of the tolerance.
+  std::vector<Displaced> displace(const Eigen::MatrixXd& loads, double share = 1.0) const {
+    const double tolerance = part->settings.residual_tolerance;
+    std::vector<Displaced> all(static_cast<std::size_t>(loads.cols()));
+    Eigen::MatrixXd u = part->constraints.displacement.replicate(1, loads.cols());
+    if (condensed)
+      u = condensed_solution(*condensed, part->mesh, part->material, part->constraints, loads,
+                             share * tolerance);
+    for (int solves = condensed ? 1 : 0;; ++solves) {
+      const InternalForces forces =
+          u.isZero(0.0) ? InternalForces{u, u} : internal_forces(part->mesh, part->material, u);
+      bool done = true;
+      for (Eigen::Index i = 0; i < loads.cols(); ++i) {
+        Displaced& one = all[static_cast<std::size_t>(i)];
+        const Eigen::VectorXd left = felt(loads.col(i) - forces.sum.col(i));
+        const double scale = std::max(loads.col(i).norm(), forces.size.col(i).norm());
+        one.residual = scale > 0.0 ? left.norm() / scale : 0.0;
+        if (one.residual <= tolerance || equations == 0) continue;
+        if (solves > kMaxRefinements) refuse(one.residual);
+        u.col(i) += solve_nodal(loads.col(i) - forces.sum.col(i), one.iterations);
+        done = false;
+      }
+      if (!done) continue;
+      for (Eigen::Index i = 0; i < loads.cols(); ++i) {
+        all[static_cast<std::size_t>(i)].displacement = u.col(i);
+        all[static_cast<std::size_t>(i)].internal = forces.sum.col(i);
+      }
+      return all;
     }
   }
 
-  // Displacement with iterative refinement; the condensed factor's is within a share of the
-  // tolerance. internal is left as its internal forces.
-  Eigen::VectorXd displace(const Eigen::VectorXd& load, Eigen::VectorXd& internal, double& residual,
-                           int& iterations, double share = 1.0) const {
-    Eigen::VectorXd u = part->constraints.displacement;
-    internal = u.isZero(0.0) ? u : internal_forces(part->mesh, part->material, u).sum;
-    residual = 0.0;
-    if (equations == 0) return u;
-    if (load.isZero(0.0) && internal.isZero(0.0)) return u;
-    if (condensed) approach(load, internal, share * part->settings.residual_tolerance, u);
-    for (int step = 0; step <= kMaxRefinements; ++step) {
-      if (!condensed || step > 0) u += solve_nodal(load - internal, iterations);
-      InternalForces forces = internal_forces(part->mesh, part->material, u);
-      internal = std::move(forces.sum);
-      const double scale = std::max(load.norm(), forces.size.norm());
-      residual = felt(load - internal).norm() / scale;
-      if (residual <= part->settings.residual_tolerance) return u;
-    }
+  [[noreturn]] void refuse(double residual) const {
     std::ostringstream text;
     text << "the relative residual " << residual << " misses the tolerance "
          << part->settings.residual_tolerance << ": the model is too badly conditioned";
     throw SolverError(text.str());
   }
 
-  // Throws ModelError for loads without effect, SolverError as displace does.
-  Solution solution(const std::vector<Load>& given) const {
+  // Throws ModelError for loads without effect.
+  Response loaded(const std::vector<Load>& given) const {
     const std::vector<Load> loads = with_masses(given, part->masses);
-    Solution s;
-    s.response.loaded = loaded_triangles(part->mesh, loads);
-    s.response.load = load_vector(part->mesh, part->material, loads);
-    require_effect(loads, s.response.load);
-    s.response.displacement =
-        displace(s.response.load, s.response.internal, s.residual, s.iterations);
-    return s;
+    Response response;
+    response.loaded = loaded_triangles(part->mesh, loads);
+    response.load = load_vector(part->mesh, part->material, loads);
+    require_effect(loads, response.load);
+    return response;
   }
 
   // A load that no free component feels, or loads that cancel, would silently do nothing.
@@ -263,22 +253,26 @@ StaticResult StaticSystem::solve(const std::vector<Load>& loads) const {
 std::vector<StaticResult> StaticSystem::solve_all(const std::vector<std::vector<Load>>& cases,
                                                   const std::vector<std::string>& names) const {
   const Data& d = *data_;
+  if (cases.empty()) return {};
   std::vector<Response> responses;
-  std::vector<double> residuals;
-  std::vector<int> iterations;
   for (std::size_t i = 0; i < cases.size(); ++i) try {
-      Solution solution = d.solution(cases[i]);
-      responses.push_back(std::move(solution.response));
-      residuals.push_back(solution.residual);
-      iterations.push_back(solution.iterations);
+      responses.push_back(d.loaded(cases[i]));
     } catch (const ModelError& error) {
       if (cases.size() == 1) throw;
       throw ModelError("load case '" + names[i] + "': " + error.what());
     }
+  Eigen::MatrixXd loads(responses[0].load.size(), static_cast<Eigen::Index>(cases.size()));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    loads.col(static_cast<Eigen::Index>(i)) = responses[i].load;
+  std::vector<Data::Displaced> displaced = d.displace(loads);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    responses[i].displacement = std::move(displaced[i].displacement);
+    responses[i].internal = std::move(displaced[i].internal);
+  }
   std::vector<StaticResult> results = read_results(*d.part, responses);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    results[i].residual = residuals[i];
-    results[i].iterations = iterations[i];
+    results[i].residual = displaced[i].residual;
+    results[i].iterations = displaced[i].iterations;
     results[i].equations = d.equations;
   }
   return results;
@@ -296,12 +290,11 @@ UnitResponses StaticSystem::unit_responses(const std::vector<std::vector<Load>>&
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::vector<Load>& unit = units[static_cast<std::size_t>(i)];
     loads.col(i) = load_vector(part.mesh, part.material, unit);
-    Eigen::VectorXd internal;
-    double residual = 0.0;
-    int iterations = 0;
-    displacements.col(i) = d.displace(loads.col(i), internal, residual, iterations, kSuperposed);
     all.insert(all.end(), unit.begin(), unit.end());
   }
+  const std::vector<Data::Displaced> displaced = d.displace(loads, kSuperposed);
+  for (Eigen::Index i = 0; i < count; ++i)
+    displacements.col(i) = displaced[static_cast<std::size_t>(i)].displacement;
   return {d.part, loaded_triangles(part.mesh, all), std::move(displacements), std::move(loads)};
 }
 
@@ -323,7 +316,7 @@ NaturalModes StaticSystem::natural_modes(int count) const {
 }
 
 Points StaticSystem::displacement(const std::vector<Load>& given) const {
-  const Eigen::VectorXd u = data_->solution(given).response.displacement;
+  const Eigen::VectorXd u = data_->displace(data_->loaded(given).load).front().displacement;
   return Eigen::Map<const Points>(u.data(), data_->part->mesh.nodes.rows(), 3);
 }
 

@@ -114,8 +114,9 @@ class StaticSystem {
   // or a load acts on held components only.
   StaticResult solve(const std::vector<Load>& loads) const;
 
-  // Several load cases, each with the digits that it has alone, for less than one by one. Errors of
-  // several say which of the names is meant.
+  // Several load cases, each as it is alone (within the residual's tolerance where elements are
+  // kept, to the last digit otherwise), for less than one by one. Errors of several say which of
+  // the names is meant.
   std::vector<StaticResult> solve_all(const std::vector<std::vector<Load>>& cases,
                                       const std::vector<std::string>& names) const;
 

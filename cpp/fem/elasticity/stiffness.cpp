@@ -229,23 +229,26 @@ LowerMatrix assemble_linear_stiffness(const TetMesh& mesh, const Material& mater
 }
 
 InternalForces internal_forces(const TetMesh& mesh, const Material& material,
-                               const Eigen::VectorXd& displacement) {
+                               const Eigen::MatrixXd& displacements) {
   const double lambda = lame_lambda(material), mu = shear_modulus(material);
-  InternalForces f{Eigen::VectorXd::Zero(displacement.size()),
-                   Eigen::VectorXd::Zero(displacement.size())};
+  const Eigen::Index n = displacements.rows(), fields = displacements.cols();
+  InternalForces f{Eigen::MatrixXd::Zero(n, fields), Eigen::MatrixXd::Zero(n, fields)};
   TetPoints points;
   for (int e = 0; e < mesh.tets.rows(); ++e) {
     check_interrupt();
-    const TetNodes x = tet_nodes(mesh, e), u = tet_displacements(mesh, e, displacement);
+    const TetNodes x = tet_nodes(mesh, e);
     evaluate_tet(x, stiffness_rule(x), points);
-    TetNodes force = TetNodes::Zero();
-    for (int q = 0; q < points.count; ++q) {
-      const TetGradients& g = points.gradients[at(q)];
-      force.noalias() += points.weights[at(q)] * (stress_tensor(lambda, mu, u, g) * g);
-    }
-    for (int i = 0; i < kTetNodes; ++i) {
-      f.sum.segment<3>(3 * mesh.tets(e, i)) += force.col(i);
-      f.size.segment<3>(3 * mesh.tets(e, i)) += force.col(i).cwiseAbs();
+    for (Eigen::Index k = 0; k < fields; ++k) {
+      const TetNodes u = tet_displacements(mesh, e, displacements.col(k));
+      TetNodes force = TetNodes::Zero();
+      for (int q = 0; q < points.count; ++q) {
+        const TetGradients& g = points.gradients[at(q)];
+        force.noalias() += points.weights[at(q)] * (stress_tensor(lambda, mu, u, g) * g);
+      }
+      for (int i = 0; i < kTetNodes; ++i) {
+        f.sum.block<3, 1>(3 * mesh.tets(e, i), k) += force.col(i);
+        f.size.block<3, 1>(3 * mesh.tets(e, i), k) += force.col(i).cwiseAbs();
+      }
     }
   }
   return f;

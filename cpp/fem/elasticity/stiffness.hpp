@@ -34,13 +34,13 @@ LowerMatrix assemble_linear_stiffness(const TetMesh& mesh, const Material& mater
                                       const Constraints& constraints, const NodePattern& pattern,
                                       double shift = 0.0);
 
-// Nodal forces with which the elements resist a displacement field: integral of Bᵀ sigma, from
-// stresses instead of matrices.
+// Nodal forces with which the elements resist displacement fields, a column each: integral of
+// Bᵀ sigma, from stresses instead of matrices.
 struct InternalForces {
-  Eigen::VectorXd sum;   // (3 n) over the elements of a node
-  Eigen::VectorXd size;  // (3 n) sum of absolute values: what flows through the node
+  Eigen::MatrixXd sum;   // (3 n, k) over the elements of a node
+  Eigen::MatrixXd size;  // (3 n, k) sum of absolute values: what flows through the node
 };
 InternalForces internal_forces(const TetMesh& mesh, const Material& material,
-                               const Eigen::VectorXd& displacement);
+                               const Eigen::MatrixXd& displacements);
 
 }  // namespace codesign::fem

@@ -85,17 +85,19 @@ int count_free(const Constraints& constraints, const std::vector<int>& nodes) {
   return static_cast<int>(free_components(constraints, nodes).size());
 }
 
-Eigen::VectorXf gather(const NodePattern& pattern, const Eigen::VectorXd& nodal) {
-  Eigen::VectorXf values(pattern.equations());
-  for (std::size_t d = 0; d < pattern.equation.size(); ++d)
-    if (pattern.equation[d] >= 0)
-      values[pattern.equation[d]] = static_cast<float>(nodal[static_cast<int>(d)]);
+Eigen::MatrixXf gather(const NodePattern& pattern, const Eigen::MatrixXd& nodal) {
+  Eigen::MatrixXf values(pattern.equations(), nodal.cols());
+  for (Eigen::Index k = 0; k < nodal.cols(); ++k)
+    for (std::size_t d = 0; d < pattern.equation.size(); ++d)
+      if (pattern.equation[d] >= 0)
+        values(pattern.equation[d], k) = static_cast<float>(nodal(static_cast<int>(d), k));
   return values;
 }
 
-void scatter(const NodePattern& pattern, const Eigen::VectorXf& values, Eigen::VectorXd& nodal) {
-  for (std::size_t d = 0; d < pattern.equation.size(); ++d)
-    if (pattern.equation[d] >= 0) nodal[static_cast<int>(d)] = values[pattern.equation[d]];
+void scatter(const NodePattern& pattern, const Eigen::MatrixXf& values, Eigen::MatrixXd& nodal) {
+  for (Eigen::Index k = 0; k < nodal.cols(); ++k)
+    for (std::size_t d = 0; d < pattern.equation.size(); ++d)
+      if (pattern.equation[d] >= 0) nodal(static_cast<int>(d), k) = values(pattern.equation[d], k);
 }
 
 // The pattern of elements whose shared nodes come last.
@@ -138,16 +140,16 @@ double Substructure::bytes() const {
 
 double Substructure::operations() const { return pattern_.supernodes.operations; }
 
-Eigen::VectorXf Substructure::condense(const Eigen::VectorXd& load) const {
-  Eigen::VectorXf forces = gather(pattern_, load);
-  forces.tail(stiffness().rows()).setZero();
+Eigen::MatrixXf Substructure::condense(const Eigen::MatrixXd& loads) const {
+  Eigen::MatrixXf forces = gather(pattern_, loads);
+  forces.bottomRows(stiffness().rows()).setZero();
   factor_.solve_lower(forces);
   return forces;
 }
 
-void Substructure::expand(Eigen::VectorXf condensed, Eigen::VectorXd& u) const {
+void Substructure::expand(Eigen::MatrixXf condensed, Eigen::MatrixXd& u) const {
   const Eigen::Index shared = stiffness().rows();
-  condensed.tail(shared) = gather(pattern_, u).tail(shared);
+  condensed.bottomRows(shared) = gather(pattern_, u).bottomRows(shared);
   factor_.solve_upper(condensed);
   scatter(pattern_, condensed, u);
 }
@@ -193,18 +195,18 @@ CondensedFactor::CondensedFactor(std::shared_ptr<const KeptElements> kept, const
                                  const Material& material)
     : kept_(std::move(kept)), factor_(factorize_reshaped(*kept_, mesh, material)) {}
 
-Eigen::VectorXd CondensedFactor::solve(const Eigen::VectorXd& load) const {
-  Eigen::VectorXd forces = load;
-  std::vector<Eigen::VectorXf> condensed;
+Eigen::MatrixXd CondensedFactor::solve(const Eigen::MatrixXd& loads) const {
+  Eigen::MatrixXd forces = loads;
+  std::vector<Eigen::MatrixXf> condensed;
   for (const KeptElements::Piece& piece : kept_->pieces) {
-    condensed.push_back(piece.elements.condense(load));
+    condensed.push_back(piece.elements.condense(loads));
     const auto shared = static_cast<Eigen::Index>(piece.components.size());
-    forces(piece.components) += condensed.back().tail(shared).cast<double>();
+    forces(piece.components, Eigen::all) += condensed.back().bottomRows(shared).cast<double>();
   }
-  Eigen::VectorXf solution = gather(kept_->pattern, forces);
+  Eigen::MatrixXf solution = gather(kept_->pattern, forces);
   factor_.solve_lower(solution);
   factor_.solve_upper(solution);
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(load.size());
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(loads.rows(), loads.cols());
   scatter(kept_->pattern, solution, u);
   for (std::size_t p = 0; p < kept_->pieces.size(); ++p)
     kept_->pieces[p].elements.expand(std::move(condensed[p]), u);

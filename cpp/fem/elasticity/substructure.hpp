@@ -32,11 +32,11 @@ class Substructure {
   double bytes() const;       // that it keeps
   double operations() const;  // that its factor took, multiply-adds
 
-  // Forces, half eliminated: (equations) N, those on the shared components last.
-  Eigen::VectorXf condense(const Eigen::VectorXd& load) const;  // (3 n) N, shared ones are ignored
+  // Forces, half eliminated: (equations, m) N, those on the shared components last.
+  Eigen::MatrixXf condense(const Eigen::MatrixXd& loads) const;  // (3 n, m) N, without shared ones
 
-  // Writes the displacements of the inner nodes, those of the shared ones being in u (3 n).
-  void expand(Eigen::VectorXf condensed, Eigen::VectorXd& u) const;
+  // Writes the displacements of the inner nodes, those of the shared ones being in u (3 n, m).
+  void expand(Eigen::MatrixXf condensed, Eigen::MatrixXd& u) const;
 
  private:
   NodePattern pattern_;
@@ -71,8 +71,8 @@ class CondensedFactor {
   CondensedFactor(std::shared_ptr<const KeptElements> kept, const TetMesh& mesh,
                   const Material& material);
 
-  // (3 n) N -> (3 n) m in about six digits, 0 where held
-  Eigen::VectorXd solve(const Eigen::VectorXd& load) const;
+  // (3 n, k) N -> (3 n, k) m in about six digits, 0 where held
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& loads) const;
 
  private:
   std::shared_ptr<const KeptElements> kept_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "fem/la/ordering.hpp"
@@ -17,6 +18,11 @@ struct FactorStructure {
   int width(int s) const { return first[at(s + 1)] - first[at(s)]; }
   int height(int s) const { return row_start[at(s + 1)] - row_start[at(s)]; }
   const int* rows(int s) const { return row.data() + row_start[at(s)]; }
+  int tallest() const {
+    int most = 0;
+    for (int s = 0; s < count(); ++s) most = std::max(most, height(s));
+    return most;
+  }
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }

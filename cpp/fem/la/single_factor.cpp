@@ -16,17 +16,14 @@ void strsm_(const char* side, const char* uplo, const char* trans, const char* d
             float* b, const int* ldb);
 void ssyrk_(const char* uplo, const char* trans, const int* n, const int* k, const float* alpha,
             const float* a, const int* lda, const float* beta, float* c, const int* ldc);
-void strsv_(const char* uplo, const char* trans, const char* diagonal, const int* n, const float* a,
-            const int* lda, float* x, const int* incx);
-void sgemv_(const char* trans, const int* m, const int* n, const float* alpha, const float* a,
-            const int* lda, const float* x, const int* incx, const float* beta, float* y,
-            const int* incy);
+void sgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k,
+            const float* alpha, const float* a, const int* lda, const float* b, const int* ldb,
+            const float* beta, float* c, const int* ldc);
 }
 
 namespace codesign::fem {
 namespace {
 
-constexpr int kOne = 1;
 constexpr float kPlus = 1.0f, kMinus = -1.0f, kZero = 0.0f;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -161,37 +158,43 @@ int SingleFactor::eliminated(int supernode) const {
   return std::clamp(last - structure_.first[at(supernode)], 0, structure_.width(supernode));
 }
 
-void SingleFactor::solve_lower(Eigen::VectorXf& x) const {
+void SingleFactor::solve_lower(Eigen::MatrixXf& x) const {
   const OneThread guard;
-  Eigen::VectorXf change(structure_.first.back());
+  const int equations = static_cast<int>(x.rows()), columns = static_cast<int>(x.cols());
+  Eigen::MatrixXf change(structure_.tallest(), columns);
+  const int change_rows = static_cast<int>(change.rows());
   for (int s = 0; s < structure_.count() && eliminated(s) > 0; ++s) {
     const int height = structure_.height(s), width = eliminated(s), below = height - width;
-    const float* columns = value_.data() + start_[at(s)];
-    const int* rows = structure_.rows(s);
+    const float* factor = value_.data() + start_[at(s)];
+    const int* rows = structure_.rows(s) + width;
     float* own = x.data() + structure_.first[at(s)];
-    strsv_("L", "N", "N", &width, columns, &height, own, &kOne);
+    strsm_("L", "L", "N", "N", &width, &columns, &kPlus, factor, &height, own, &equations);
     if (below == 0) continue;
-    sgemv_("N", &below, &width, &kPlus, columns + width, &height, own, &kOne, &kZero, change.data(),
-           &kOne);
-    for (int i = 0; i < below; ++i) x[rows[width + i]] -= change[i];
+    sgemm_("N", "N", &below, &columns, &width, &kPlus, factor + width, &height, own, &equations,
+           &kZero, change.data(), &change_rows);
+    for (int k = 0; k < columns; ++k)
+      for (int i = 0; i < below; ++i) x(rows[i], k) -= change(i, k);
   }
 }
 
-void SingleFactor::solve_upper(Eigen::VectorXf& x) const {
+void SingleFactor::solve_upper(Eigen::MatrixXf& x) const {
   const OneThread guard;
-  Eigen::VectorXf known(structure_.first.back());
+  const int equations = static_cast<int>(x.rows()), columns = static_cast<int>(x.cols());
+  Eigen::MatrixXf known(structure_.tallest(), columns);
+  const int known_rows = static_cast<int>(known.rows());
   for (int s = structure_.count() - 1; s >= 0; --s) {
     const int height = structure_.height(s), width = eliminated(s), below = height - width;
     if (width == 0) continue;
-    const float* columns = value_.data() + start_[at(s)];
-    const int* rows = structure_.rows(s);
+    const float* factor = value_.data() + start_[at(s)];
+    const int* rows = structure_.rows(s) + width;
     float* own = x.data() + structure_.first[at(s)];
     if (below > 0) {
-      for (int i = 0; i < below; ++i) known[i] = x[rows[width + i]];
-      sgemv_("T", &below, &width, &kMinus, columns + width, &height, known.data(), &kOne, &kPlus,
-             own, &kOne);
+      for (int k = 0; k < columns; ++k)
+        for (int i = 0; i < below; ++i) known(i, k) = x(rows[i], k);
+      sgemm_("T", "N", &width, &columns, &below, &kMinus, factor + width, &height, known.data(),
+             &known_rows, &kPlus, own, &equations);
     }
-    strsv_("L", "T", "N", &width, columns, &height, own, &kOne);
+    strsm_("L", "L", "T", "N", &width, &columns, &kPlus, factor, &height, own, &equations);
   }
 }
 

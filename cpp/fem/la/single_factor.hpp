@@ -30,11 +30,12 @@ class SingleFactor {
   // The Schur complement of those that are left, its lower triangle: (left, left).
   const Eigen::MatrixXf& complement() const { return complement_; }
 
-  // In place, of all equations; with none left the two after one another solve. solve_lower: forces
-  // half eliminated; those on equations that are left are what acts on the complement. solve_upper:
-  // the solution, from forces half eliminated and the solution of what is left.
-  void solve_lower(Eigen::VectorXf& x) const;
-  void solve_upper(Eigen::VectorXf& x) const;
+  // In place, of all equations, a column for each right-hand side; with none left the two after one
+  // another solve. solve_lower: forces half eliminated; those on equations that are left are what
+  // acts on the complement. solve_upper: the solution, from forces half eliminated and the solution
+  // of what is left.
+  void solve_lower(Eigen::MatrixXf& x) const;
+  void solve_upper(Eigen::MatrixXf& x) const;
 
   double bytes() const;
 

@@ -47,7 +47,8 @@ TetNodes tet_nodes(const TetMesh& mesh, int tet) {
   return x;
 }
 
-TetNodes tet_displacements(const TetMesh& mesh, int tet, const Eigen::VectorXd& displacement) {
+TetNodes tet_displacements(const TetMesh& mesh, int tet,
+                           const Eigen::Ref<const Eigen::VectorXd>& displacement) {
   TetNodes u;
   for (int i = 0; i < kTetNodes; ++i) u.col(i) = displacement.segment<3>(3 * mesh.tets(tet, i));
   return u;

@@ -32,7 +32,8 @@ Eigen::Matrix<double, 2, 6> tri6_reference_gradients(const Eigen::Vector2d& xi);
 // Positions of the nodes of an element [m].
 TetNodes tet_nodes(const TetMesh& mesh, int tet);
 // Those of a nodal field (3 n).
-TetNodes tet_displacements(const TetMesh& mesh, int tet, const Eigen::VectorXd& displacement);
+TetNodes tet_displacements(const TetMesh& mesh, int tet,
+                           const Eigen::Ref<const Eigen::VectorXd>& displacement);
 FaceNodes face_nodes(const TetMesh& mesh, int boundary_triangle);
 
 // True if every mid-edge node is the midpoint of its edge up to rounding.
