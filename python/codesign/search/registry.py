@@ -40,9 +40,10 @@ class SearchKind:
 
     make: builds it for a design space and the keys of the minimized numbers. learns: what it asks for depends on what
     it was told, so it is asked for one generation at a time. options: a dataclass of its own settings, all with
-    defaults. batch: of these options, how many designs are asked for at a time after the start population; None: a
-    generation. evaluations: the budget where none is given; None: that of the study's generations. lazy: whether
-    strength and clearances of designs that cannot enter the front are left out where the study does not say.
+    defaults. batch: of these options, how many designs are asked for at a time after the start population, while as
+    many are still being evaluated; None: a generation. evaluations: the budget where none is given; None: that of the
+    study's generations. lazy: whether strength and clearances of designs that cannot enter the front are left out where
+    the study does not say.
     """
 
     make: Callable[[DesignSpace, Sequence[str], Settings, Any], Search]

@@ -85,8 +85,8 @@ class Settings:
         elif self.steady:
             schedule = Schedule(size, 1, self.lag or size)
         else:
-            batch = kind.batch(kind.checked_options(self.options)) if kind.batch else size
-            schedule = Schedule(size, batch, batch)
+            batch = kind.batch(kind.checked_options(self.options)) if kind.batch else None
+            schedule = Schedule(size, batch, 2 * batch) if batch else Schedule(size)
         stop = Termination(self.evaluations, self.wall_time, self.stall_generations, self.stall_tolerance)
         total = min(self.evaluations or len(self.listed), math.prod(space.levels))
         return Plan(self.search(space, objectives), schedule, stop, total, self.lazy)
