@@ -8,6 +8,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
+import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,13 +17,23 @@ from codesign.transforms import Matrix
 
 Indices = NDArray[np.intp]
 ROUNDING = 1e-9  # rad
+FLAT = 1e-12  # of the cube of a hull's size: volume of a flat one
+SLIVER = 1e-9  # of the square of a hull's size: area of a facet whose normal is not trusted
 
 
 def hull_vertices(points: Matrix) -> Matrix:
-    """Vertices (m, 3) of the convex hull of a solid's points (n, 3)."""
-    from scipy.spatial import ConvexHull  # a quarter of a second to import
+    """Points (m, 3) that span the convex hull of points (n, 3); all of them if they lie in a plane."""
+    found, triangles = _hull_mesh(points)
+    return found if len(triangles) else np.ascontiguousarray(points, dtype=float)
 
-    return np.ascontiguousarray(points[ConvexHull(points).vertices], dtype=float)
+
+def _hull_mesh(points: Matrix) -> tuple[Matrix, Indices]:
+    """Points (m, 3) and triangles (k, 3), outwards, of a convex hull; no triangles if the points lie in a plane."""
+    hull = manifold3d.Manifold.hull_points(np.ascontiguousarray(points, dtype=float))
+    mesh = hull.to_mesh64()
+    solid = hull.volume() > FLAT * np.ptp(points, axis=0).max() ** 3
+    triangles = mesh.tri_verts if solid else np.zeros((0, 3))
+    return np.array(mesh.vert_properties[:, :3], dtype=float, order="C"), np.array(triangles, dtype=np.intp)
 
 
 def convex_pieces(points: Matrix, triangles: NDArray[Any], count: int) -> list[Matrix]:
@@ -74,22 +85,27 @@ def _crossings(points: Matrix, starts: Indices, ends: Indices, axis: int, plane:
 
 @dataclass(frozen=True, slots=True)
 class _Hull:
-    """normals (f, 3), outwards, and offsets (f,) of the facets: normal · x + offset = 0; edges (e, 2), corners (c,)."""
+    """corners (c, 3); normals (f, 3), outwards, and offsets (f,) of facets: normal · x + offset = 0; edges (e, 2)."""
 
+    corners: Matrix
     normals: Matrix
     offsets: Matrix
     edges: Indices
-    corners: Indices
 
 
 @lru_cache(maxsize=512)
 def _hull(points: bytes) -> _Hull:
     """The hull of points (n, 3) as C-contiguous floats; kept, since a robot's shapes are the same in every design."""
-    from scipy.spatial import ConvexHull
-
-    hull = ConvexHull(np.frombuffer(points).reshape(-1, 3))
-    edges = np.vstack([hull.simplices[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))])
-    return _Hull(hull.equations[:, :3], hull.equations[:, 3], edges, hull.vertices)
+    corners, triangles = _hull_mesh(np.frombuffer(points).reshape(-1, 3))
+    if not len(triangles):
+        raise MeshError("no angle to a shape without volume")
+    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    areas = np.linalg.norm(normals, axis=1)
+    flat = areas <= SLIVER * np.ptp(corners, axis=0).max() ** 2  # what lies between neighbors of one plane says nothing
+    normals = normals[~flat] / areas[~flat, None]
+    edges = np.vstack([triangles[:, [i, j]] for i, j in ((0, 1), (1, 2), (2, 0))])
+    return _Hull(corners, normals, -np.einsum("ij,ij->i", normals, a[~flat]), edges[edges[:, 0] < edges[:, 1]])
 
 
 def smallest_axis_angle(pieces: Sequence[Matrix], frame_T_points: Matrix) -> float:
@@ -119,11 +135,11 @@ def axis_angle(points: Matrix, frame_T_points: Matrix | None = None) -> float:
 
     Zero where the axis meets the hull; else on an edge p + t (q − p), where its cosine is stationary.
 
-    frame_T_points: (4, 4) pose of the points' frame, if it is another.
+    frame_T_points: (4, 4) pose of the points' frame, if it is another. Raises: MeshError: the points lie in a plane.
     """
     hull = _hull(np.ascontiguousarray(points, dtype=float).tobytes())
     motion = np.eye(4) if frame_T_points is None else frame_T_points
-    points = points @ motion[:3, :3].T + motion[:3, 3]
+    corners = hull.corners @ motion[:3, :3].T + motion[:3, 3]
     normals = hull.normals @ motion[:3, :3].T
     offsets, facing = hull.offsets - normals @ motion[:3, 3], normals[:, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -132,10 +148,10 @@ def axis_angle(points: Matrix, frame_T_points: Matrix | None = None) -> float:
     leaves = np.min(crossings[facing > 0.0], initial=np.inf)
     if enters <= leaves and np.all(offsets[facing == 0.0] <= 0.0):
         return 0.0
-    p, d = points[hull.edges[:, 0]], points[hull.edges[:, 1]] - points[hull.edges[:, 0]]
+    p, d = corners[hull.edges[:, 0]], corners[hull.edges[:, 1]] - corners[hull.edges[:, 0]]
     pp, pd, dd = (np.einsum("ij,ij->i", a, b) for a, b in ((p, p), (p, d), (d, d)))
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (d[:, 2] * pp - p[:, 2] * pd) / (p[:, 2] * dd - d[:, 2] * pd)
     nearest = p + np.clip(np.nan_to_num(t), 0.0, 1.0)[:, None] * d
-    candidates = np.vstack([points[hull.corners], nearest])
+    candidates = np.vstack([corners, nearest])
     return float(np.arctan2(np.hypot(candidates[:, 0], candidates[:, 1]), candidates[:, 2]).min())

@@ -234,6 +234,23 @@ def test_hull_vertices_leave_out_what_is_inside():
     assert len(hull_vertices(points)) == 8
 
 
+def test_flat_points_are_their_own_hull():
+    flat = np.array([[x, y, 2.0] for x in (1.0, 2.0, 3.0) for y in (-1.0, 1.0)])
+    np.testing.assert_array_equal(hull_vertices(flat), flat)
+    for points in (flat, flat[:1]):
+        with pytest.raises(MeshError, match="without volume"):
+            axis_angle(points)
+
+
+def test_hulls_are_those_of_qhull():
+    generator = np.random.default_rng(2)
+    for scale in (1e-3, 1.0, 1e3):
+        points = generator.normal(size=(60, 3)) * scale
+        wanted = points[ConvexHull(points).vertices]
+        found = hull_vertices(points)
+        np.testing.assert_array_equal(np.unique(found, axis=0), np.unique(wanted, axis=0))
+
+
 def test_postures_cover_the_ranges():
     postures = range_postures({"a": (-1.0, 1.0), "b": (0.0, 2.0)}, 10)
     assert {len(q) for q in postures.values()} == {15}
