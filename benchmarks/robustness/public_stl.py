@@ -7,7 +7,8 @@ them with pip. Of each package it takes up to `--each` different files of at mos
 sorted by their number of triangles; the smallest of all are run first. Each file is read, checked, repaired if it
 bounds no solid as it is (`fem.repair_surface`), and meshed with the edge length, options and limits of `codesign
 stress`, in a process of its own; `--cpu` seconds are an outer limit that those should not need. A mesh counts if the
-Euler characteristic of its boundary is that of the surface and its volume agrees within 2 %. `--log` takes one line of
+solid has the topology of the surface (`solid_topology`: where the boundary only touches itself, in `small_faults`, the
+solid does not) and its volume agrees within 2 %. `--log` takes one line of
 JSON a file as soon as it is known: a run that was ended goes on there, `--again` runs those that were not meshed a
 second time. `--only TEXT` takes files by their name.
 """
@@ -32,6 +33,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from generated_meshes import solid_topology, surface_topology
 
 from codesign import fem
 from codesign.errors import MeshError
@@ -106,12 +108,6 @@ def choose(files: list[PublicFile], each: int, most: int) -> list[PublicFile]:
     return [small[i] for i in picked]
 
 
-def euler_characteristic(triangles: np.ndarray) -> int:
-    """Points minus edges plus triangles."""
-    edges = np.sort(np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
-    return len(np.unique(triangles)) - len(np.unique(edges, axis=0)) + len(triangles)
-
-
 def mesh_file(path: str, cpu_limit: int, connection: Any) -> None:
     """Sends what became of a file."""
     resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit, cpu_limit))
@@ -133,10 +129,11 @@ def mesh_file(path: str, cpu_limit: int, connection: Any) -> None:
     except MeshError as error:
         connection.send(document | {"outcome": "not meshed", "reason": str(error)})
         return
-    wanted, found = (euler_characteristic(np.asarray(t)) for t in (surface.triangles, mesh.boundary[:, :3]))
+    wanted, found = surface_topology(surface.triangles), solid_topology(mesh.tets[:, :4])
     change = mesh.quality.volume / volume - 1.0
     outcome = "meshed" if found == wanted and abs(change) < 0.02 else "wrong mesh"
-    document |= {"euler": [wanted, found], "volume_change": change, "tetrahedra": len(mesh.tets)}
+    document |= {"pieces_and_euler": [wanted, found], "small_faults": mesh.report.small_faults}
+    document |= {"volume_change": change, "tetrahedra": len(mesh.tets)}
     connection.send(document | {"outcome": outcome, "seconds": time.process_time() - start})
 
 
@@ -183,7 +180,7 @@ def print_table(found: dict[str, list[PublicFile]], most: int, outcomes: list[di
     print(f"\n{good} of {len(solids)} solids meshed with the right topology: {good / max(1, len(solids)):.1%}\n")
     for o in outcomes:
         if o["outcome"] != "meshed":
-            print(f"{o['outcome']}: {o['file']}: {o['reason'] or (o['euler'], o['volume_change'])}")
+            print(f"{o['outcome']}: {o['file']}: {o['reason'] or (o['pieces_and_euler'], o['volume_change'])}")
 
 
 def main() -> None:

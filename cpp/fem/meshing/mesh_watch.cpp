@@ -145,7 +145,8 @@ void MeshWatch::tick() {
 
 void MeshWatch::start_balls(const SizeField& size) {
   balls_.clear();
-  cell_ = smallest_size(size);
+  // Of the first mesh: where refining only brings more balls, cells that shrink never fill.
+  if (cell_ == 0.0) cell_ = smallest_size(size);
 }
 
 void MeshWatch::ball(const Vector3d& center) {

@@ -79,7 +79,7 @@ class MeshWatch {
   double deadline_, time_limit_;
   std::size_t most_vertices_, most_questions_, questions_ = 0;
   unsigned steps_ = 0;
-  double cell_ = 1.0;  // in which balls are counted, m
+  double cell_ = 0.0;  // in which balls are counted, m; 0 before the first mesh
   std::map<std::array<long, 3>, int> balls_;
 };
 

@@ -37,6 +37,14 @@ TEST(MeshWatch, BallsWithoutEndInOnePlaceAreStopped) {
   set_balls(watch, 100, crowded);
 }
 
+TEST(MeshWatch, BallsThatSmallerElementsOnlyMultiplyAreStoppedToo) {
+  MeshWatch watch(MeshOptions{});
+  watch.start_balls(SizeField{1e-3, {}});
+  watch.start_balls(SizeField{1e-6, {}});  // refined at a fault, whose edges meet at a tiny angle
+  const auto crowded = [](int i) { return Eigen::Vector3d(2e-8 * i, 0.02, 0.0); };
+  EXPECT_THROW(set_balls(watch, kMany, crowded), MeshWatch::Stop);
+}
+
 TEST(MeshWatch, AsManyBallsAlongALineAreNot) {
   MeshWatch watch(MeshOptions{});
   watch.start_balls(SizeField{1e-3, {}});
