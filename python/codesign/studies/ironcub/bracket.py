@@ -6,6 +6,7 @@ Part frame (mm): z = 0 lower face of the base, z up; x away from the robot; y = 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
@@ -34,6 +35,7 @@ NECK_END, NECK_WIDTH, NECK_RADIUS = 20.0, 20.0, 5.0  # x where the neck's rounds
 SEAT_RADIUS, SEAT_DEPTH = 23.0, 1.0
 SEAT_HOLE_RADIUS = 1.6
 SEAT_HOLES = polar(19.7, 10.0, -10.0, 110.0, -110.0, 130.0, -130.0)
+BENT_HOLES = [hole for hole in SEAT_HOLES if hole[0] < 0.0]  # those towards the crease, where the slab bends
 SCREWS = [(4.0, 10.0), (4.0, -10.0)]
 COUNTERBORE_RADIUS, COUNTERBORE_DEPTH = 3.0, 3.4  # of the seat's holes, from the upper face
 SCREW_RADIUS = 4.2
@@ -48,8 +50,9 @@ class JetpackBracket(Part):
     """Bracket with its slab bent by `angle` and the turbine seat at `distance` from the upper crease.
 
     thickness: of the tilted slab; 15, or 14.9994 as in the published parts (`as_published`).
-    seat_analyzed: whether the solid that is analyzed in a search keeps the seat's pocket and holes. The counterbores'
-    edges carry the peak where a turbine's thrust bends the slab; a load spread over the seat does not reach them.
+    seat_analyzed: whether the solid that is analyzed in a search keeps the seat's pocket and the four holes of it that
+    are nearer to the crease. Their counterbores' edges carry the peak where a turbine's thrust bends the slab; a load
+    spread over the seat does not reach them.
     """
 
     load_variants = ("uniform", "thrust_line")
@@ -111,30 +114,41 @@ class JetpackBracket(Part):
         """The part, or its half y >= 0 with the face `symmetry`, as it is analyzed.
 
         geometry: "full"; "simplified" without screw and dowel holes and, unless `seat_analyzed`, without the seat's
-        pocket and holes: then `seat` is the slab's whole lower face and the load acts on the disc `seat_radius` about
-        `seat_center`. support: "published" names both base faces up to the creases `mount`; "bolted" names the contact
-        with the jetpack `pad` and the screws' `screw_seat` instead.
+        pocket and holes; with it, without the two holes at the free end. Without pocket `seat` is the slab's whole
+        lower face and the load acts on the disc `seat_radius` about `seat_center`. support: "published" names both
+        base faces up to the creases `mount`; "bolted" names the contact with the jetpack `pad` and the screws'
+        `screw_seat` instead.
         """
         if geometry not in ("full", "simplified") or support not in ("published", "bolted"):
             raise ValueError(f"geometry = {geometry!r}, support = {support!r}: no such variant")
         return self._build(
-            seat=self._has_seat(geometry), screws=geometry == "full" or support == "bolted", dowel=geometry == "full",
-            bolted=support == "bolted", half=half,
-        )  # fmt: skip
+            seat_holes=self._seat_holes(geometry),
+            screws=geometry == "full" or support == "bolted",
+            dowel=geometry == "full",
+            bolted=support == "bolted",
+            half=half,
+        )
 
-    def _has_seat(self, geometry: str) -> bool:
-        """Whether a solid that is analyzed has the seat's pocket and holes."""
-        return geometry == "full" or self.seat_analyzed
+    def _seat_holes(self, geometry: str) -> Sequence[tuple[float, float]]:
+        """Holes of the seat that a solid that is analyzed has; none: it has no pocket either."""
+        if geometry == "full":
+            return SEAT_HOLES
+        return BENT_HOLES if self.seat_analyzed else []
 
     def _build(
-        self, seat: bool = True, screws: bool = True, dowel: bool = True, bolted: bool = False, half: bool = False
+        self,
+        seat_holes: Sequence[tuple[float, float]] = SEAT_HOLES,
+        screws: bool = True,
+        dowel: bool = True,
+        bolted: bool = False,
+        half: bool = False,
     ) -> Shape:
-        shape = self._slabs("" if bolted else "mount", "" if seat else "seat")
+        shape = self._slabs("" if bolted else "mount", "" if seat_holes else "seat")
         if bolted:
             pad = box((-20.0, -20.0, 0.0), (min(20.0, self._upper_crease_x), 20.0, BASE), z1="pad")
             shape = union(shape - pad, pad)
-        if seat:
-            for tool in self._seat_tools():
+        if seat_holes:
+            for tool in self._seat_tools(seat_holes):
                 shape = shape - tool
         if screws:
             screw = stepped_hole((7.0, -1.0, 9.0), (SCREW_RADIUS, 9.0, BASE + 1.0), shoulder_face="screw_seat")
@@ -170,13 +184,13 @@ class JetpackBracket(Part):
         beyond_end = Extrusion(round_end, -1.0, self.thickness + 1.0).placed(slab)
         return body - beside_neck - beside_neck.mirrored("y") - beyond_end
 
-    def _seat_tools(self) -> list[Shape]:
-        """Pocket in the lower face and six counterbored holes around its center."""
+    def _seat_tools(self, holes: Sequence[tuple[float, float]]) -> list[Shape]:
+        """Pocket in the lower face and counterbored holes around its center."""
         top = self.thickness
         shoulder = top - COUNTERBORE_DEPTH
         hole = stepped_hole((SEAT_HOLE_RADIUS, 0.0, shoulder), (COUNTERBORE_RADIUS, shoulder, top + 1.0))
         pocket = cylinder(SEAT_RADIUS, -1.0, SEAT_DEPTH, end_face="seat")
-        return [tool.placed(self._seat_frame) for tool in (pocket, at_points(hole, SEAT_HOLES))]
+        return [tool.placed(self._seat_frame) for tool in (pocket, at_points(hole, holes))]
 
     def interfaces(self) -> dict[str, Vector]:
         """turbine_seat: middle of the pocket's floor, x along the slab away from the crease, z out of the floor."""
@@ -236,7 +250,7 @@ class JetpackBracket(Part):
         surface = meshed.fem_surface(settings.geometry, settings.segments, support=settings.support, half=half)
         center = self.turbine_axis if settings.load == "thrust_line" else self.seat_center
         slab = fem.Disc(self.seat_center, self.slab_normal, self.seat_radius)
-        disc = None if self._has_seat(settings.geometry) else slab
+        disc = None if self._seat_holes(settings.geometry) else slab
         mirror = PLANE if half else None
 
         def at_point(load: fem.AffineTraction) -> fem.Load:
@@ -276,7 +290,7 @@ class JetpackBracket(Part):
         """The bracket that is meshed, and how its slab is stretched between creases and seat to be this one."""
         if settings.accuracy != "optimization" or settings.geometry == "full":
             return self, None
-        found = self.stretched_from() if self._has_seat(settings.geometry) else self._stretched(14.0, 0.0)
+        found = self.stretched_from() if self._seat_holes(settings.geometry) else self._stretched(14.0, 0.0)
         return found or (self, None)
 
     def _size_field(self, settings: StressSettings, half: bool) -> fem.SizeField:
@@ -296,16 +310,17 @@ class JetpackBracket(Part):
             for crease, (size, radius) in ((self.lower_crease, lower), (self.upper_crease, upper))
         ]
         if self.seat_analyzed:
-            sources += self._counterbore_sources(fine, half)
+            sources += self._counterbore_sources(settings, half)
             sources += self._neck_sources(half)
         return fem.SizeField(base * MILLIMETER, sources)
 
-    def _counterbore_sources(self, fine: bool, half: bool) -> list[fem.SizeSource]:
+    def _counterbore_sources(self, settings: StressSettings, half: bool) -> list[fem.SizeSource]:
         """Circles along the counterbores' edges on the slab's upper face, finest where the slab bends most."""
         turn = np.linspace(0.0, 2.0 * math.pi, 17)
         nearest = min(x for x, _ in SEAT_HOLES)
+        fine = settings.accuracy != "optimization"
         sources = []
-        for x, y in SEAT_HOLES:
+        for x, y in self._seat_holes(settings.geometry):
             if half and y < 0.0:
                 continue
             size, growth, radius = (0.5, 0.35, 0.5) if fine else ((0.5 if x == nearest else 1.4), 0.5, 0.5)
