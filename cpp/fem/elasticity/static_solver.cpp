@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kMaxRefinements = 3;
 constexpr double kSuperposed = 1e-3;  // of the tolerance: for solutions whose sum may be small
+constexpr double kRoundOff = 1e-12;   // of loads, relative
 constexpr double kGradientTolerance = 1e-11;  // of conjugate gradients, see there
 constexpr int kMaxIterations = 500;
 // Multiply-adds of a factorization that takes as long as conjugate gradients on the same part.
@@ -60,6 +61,48 @@ bool solves_directly(const NodePattern& pattern, const StaticSettings& settings)
     return false;
   if (settings.solver != LinearSolver::automatic) return settings.solver == LinearSolver::direct;
   return factor_fits(pattern, factor_limits(settings));
+}
+
+// A load case that is a multiple of an earlier one, or of itself.
+struct Multiple {
+  std::size_t of;
+  double factor = 1.0;
+};
+
+std::vector<Multiple> multiples(const std::vector<Response>& responses,
+                                const Constraints& constraints) {
+  std::vector<Multiple> found;
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    found.push_back({i});
+    if (!constraints.displacement.isZero(0.0)) continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      const Eigen::VectorXd &load = responses[i].load, &other = responses[j].load;
+      const double factor = load.dot(other) / other.squaredNorm();
+      if (found[j].of != j || responses[i].loaded != responses[j].loaded || !(factor > 0.0) ||
+          (load - factor * other).norm() > kRoundOff * load.norm())
+        continue;
+      found.back() = {j, factor};
+      break;
+    }
+  }
+  return found;
+}
+
+// The answer to a load times a factor > 0.
+StaticResult scaled(StaticResult r, double factor) {
+  r.displacement *= factor;
+  r.stress *= factor;
+  r.von_mises *= factor;
+  r.reactions *= factor;
+  r.support_forces *= factor;
+  r.element_error *= factor;
+  for (double* value :
+       {&r.max_displacement, &r.peak_stress, &r.stress_error, &r.stress_50, &r.left_out.stress})
+    *value *= factor;
+  r.work *= factor * factor;
+  r.strain_energy *= factor * factor;
+  r.safety_factor /= factor;
+  return r;
 }
 
 }  // namespace
@@ -159,6 +202,25 @@ struct StaticSystem::Data {
     }
   }
 
+  // What responses, of which the loads are known, do to the part.
+  std::vector<StaticResult> answers(std::vector<Response> responses) const {
+    Eigen::MatrixXd loads(responses[0].load.size(), static_cast<Eigen::Index>(responses.size()));
+    for (std::size_t i = 0; i < responses.size(); ++i)
+      loads.col(static_cast<Eigen::Index>(i)) = responses[i].load;
+    std::vector<Displaced> displaced = displace(loads);
+    for (std::size_t i = 0; i < responses.size(); ++i) {
+      responses[i].displacement = std::move(displaced[i].displacement);
+      responses[i].internal = std::move(displaced[i].internal);
+    }
+    std::vector<StaticResult> results = read_results(*part, responses);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      results[i].residual = displaced[i].residual;
+      results[i].iterations = displaced[i].iterations;
+      results[i].equations = equations;
+    }
+    return results;
+  }
+
   [[noreturn]] void refuse(double residual) const {
     std::ostringstream text;
     text << "the relative residual " << residual << " misses the tolerance "
@@ -171,31 +233,30 @@ struct StaticSystem::Data {
     const std::vector<Load> loads = with_masses(given, part->masses);
     Response response;
     response.loaded = loaded_triangles(part->mesh, loads);
-    response.load = load_vector(part->mesh, part->material, loads);
-    require_effect(loads, response.load);
-    return response;
-  }
-
-  // A load that no free component feels, or loads that cancel, would silently do nothing.
-  void require_effect(const std::vector<Load>& loads, const Eigen::VectorXd& total) const {
-    constexpr double kRoundOff = 1e-12;
+    response.load = Eigen::VectorXd::Zero(3 * part->mesh.nodes.rows());
     double largest = 0.0;
     for (std::size_t i = 0; i < loads.size(); ++i) {
-      const Eigen::VectorXd load =
-          loads.size() == 1 ? total : load_vector(part->mesh, part->material, {loads[i]});
-      const double size = load.cwiseAbs().maxCoeff();
-      largest = std::max(largest, size);
-      if (size == 0.0 || felt(load).cwiseAbs().maxCoeff() > kRoundOff * size) continue;
-      throw ModelError("load " + std::to_string(i + 1) + " of " + std::to_string(loads.size()) +
-                       " acts on held faces only and has no effect: move it off the supports, or "
-                       "hold less");
+      const Eigen::VectorXd load = load_vector(part->mesh, part->material, {loads[i]});
+      require_felt(load, i, loads.size());
+      largest = std::max(largest, load.cwiseAbs().maxCoeff());
+      response.load += load;
     }
-    if (total.cwiseAbs().maxCoeff() <= kRoundOff * largest &&
+    if (response.load.cwiseAbs().maxCoeff() <= kRoundOff * largest &&
         part->constraints.displacement.isZero(0.0)) {
       throw ModelError(loads.empty() ? "nothing acts on the part: give a load, or a displacement "
                                        "of a support"
                                      : "the loads add up to nothing: no node is loaded");
     }
+    return response;
+  }
+
+  // A load that no free component feels would silently do nothing.
+  void require_felt(const Eigen::VectorXd& load, std::size_t i, std::size_t count) const {
+    const double size = load.cwiseAbs().maxCoeff();
+    if (size == 0.0 || felt(load).cwiseAbs().maxCoeff() > kRoundOff * size) return;
+    throw ModelError("load " + std::to_string(i + 1) + " of " + std::to_string(count) +
+                     " acts on held faces only and has no effect: move it off the supports, or "
+                     "hold less");
   }
 };
 
@@ -261,20 +322,15 @@ std::vector<StaticResult> StaticSystem::solve_all(const std::vector<std::vector<
       if (cases.size() == 1) throw;
       throw ModelError("load case '" + names[i] + "': " + error.what());
     }
-  Eigen::MatrixXd loads(responses[0].load.size(), static_cast<Eigen::Index>(cases.size()));
+  const std::vector<Multiple> same = multiples(responses, d.part->constraints);
+  std::vector<Response> solved;
   for (std::size_t i = 0; i < cases.size(); ++i)
-    loads.col(static_cast<Eigen::Index>(i)) = responses[i].load;
-  std::vector<Data::Displaced> displaced = d.displace(loads);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    responses[i].displacement = std::move(displaced[i].displacement);
-    responses[i].internal = std::move(displaced[i].internal);
-  }
-  std::vector<StaticResult> results = read_results(*d.part, responses);
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    results[i].residual = displaced[i].residual;
-    results[i].iterations = displaced[i].iterations;
-    results[i].equations = d.equations;
-  }
+    if (same[i].of == i) solved.push_back(std::move(responses[i]));
+  std::vector<StaticResult> answers = d.answers(std::move(solved));
+  std::vector<StaticResult> results(cases.size());
+  for (std::size_t i = 0, next = 0; i < cases.size(); ++i)
+    results[i] =
+        same[i].of == i ? std::move(answers[next++]) : scaled(results[same[i].of], same[i].factor);
   return results;
 }
 

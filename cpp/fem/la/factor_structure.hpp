@@ -28,6 +28,7 @@ struct FactorStructure {
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 };
 
+// That of the pattern's supernodes.
 FactorStructure factor_structure(const NodePattern& pattern);
 
 }  // namespace codesign::fem

@@ -232,6 +232,30 @@ TEST(StaticSolver, OneFactorizationServesManyLoadCases) {
             1e-10 * both.displacement.norm());
 }
 
+TEST(StaticSolver, AMultipleOfALoadCaseHasItsMultipleAnswer) {
+  const TetMesh mesh = beam(1);
+  const StaticSystem system(mesh, kSteel, {Support{kRoot(mesh)}});
+  const std::vector<Load> once{Force{kTip(mesh), {0, 1, 2}}}, thrice{Force{kTip(mesh), {0, 3, 6}}};
+  const std::vector<Load> back{Force{kTip(mesh), {0, -1, -2}}};
+  const std::vector<StaticResult> results =
+      system.solve_all({once, thrice, back}, {"once", "thrice", "back"});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const StaticResult alone = system.solve(std::vector{once, thrice, back}[i]);
+    EXPECT_LT((results[i].displacement - alone.displacement).norm(),
+              1e-12 * alone.displacement.norm());
+    EXPECT_LT((results[i].stress - alone.stress).norm(), 1e-12 * alone.stress.norm());
+    EXPECT_LT((results[i].reactions - alone.reactions).norm(), 1e-12 * alone.reactions.norm());
+    EXPECT_NEAR(results[i].safety_factor, alone.safety_factor, 1e-12 * alone.safety_factor);
+    EXPECT_NEAR(results[i].stress_error, alone.stress_error, 1e-10 * alone.stress_error);
+    EXPECT_NEAR(results[i].stress_50, alone.stress_50, 1e-12 * alone.stress_50);
+    EXPECT_NEAR(results[i].left_out.stress, alone.left_out.stress, 1e-12 * alone.peak_stress);
+    EXPECT_NEAR(results[i].work, alone.work, 1e-12 * alone.work);
+    EXPECT_NEAR(results[i].strain_energy, alone.strain_energy, 1e-12 * alone.work);
+    EXPECT_NEAR(results[i].max_displacement, alone.max_displacement, 1e-12);
+    EXPECT_EQ(results[i].peak_position, alone.peak_position);
+  }
+}
+
 TEST(StaticSolver, HalfModelsReportTheWorkOfTheWholePart) {
   const TetMesh whole = box_mesh(4, 4, 2),
                 half = box_mesh(4, 2, 2, [](const Vector3d&x) -> Vector3d {
