@@ -210,13 +210,12 @@ void solve(const PartCase& part, const KeptParts& kept, PartAnalysis& analysis) 
 // A part that single precision does not resolve, kept elements or the rest of it, has one factor.
 void solve_stretched(const PartCase& part, const std::shared_ptr<const TetMesh>& mesh,
                      PartAnalysis& analysis) {
-  const PartAnalysis meshed = analysis;
   try {
     return solve(part, elements_of(part, mesh), analysis);
   } catch (const MemoryLimitError&) {
     throw;
   } catch (const SolverError&) {
-    analysis = meshed;
+    analysis.responses.clear();
   }
   solve(part, {}, analysis);
 }

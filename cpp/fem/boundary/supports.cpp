@@ -78,6 +78,12 @@ Constraints constrain(const TetMesh& mesh, const std::vector<Support>& supports)
   return c;
 }
 
+Eigen::MatrixXd felt(const Constraints& constraints, Eigen::MatrixXd nodal) {
+  for (std::size_t d = 0; d < constraints.fixed.size(); ++d)
+    if (constraints.fixed[d]) nodal.row(static_cast<Eigen::Index>(d)).setZero();
+  return nodal;
+}
+
 std::vector<int> clamped_triangles(const TetMesh& mesh, const std::vector<Support>& supports) {
   return held_triangles(mesh, supports, false);
 }

@@ -32,6 +32,9 @@ struct Constraints {
 // different prescribed values of one component.
 Constraints constrain(const TetMesh& mesh, const std::vector<Support>& supports);
 
+// What free components feel of nodal vectors (3 n, k): zero where held.
+Eigen::MatrixXd felt(const Constraints& constraints, Eigen::MatrixXd nodal);
+
 // Boundary triangles selected by supports that are no symmetry planes: the constrained faces, from
 // which the peak stress keeps its distance. Sorted.
 std::vector<int> clamped_triangles(const TetMesh& mesh, const std::vector<Support>& supports);

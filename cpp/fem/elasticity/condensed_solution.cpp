@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "fem/elasticity/stiffness.hpp"
@@ -10,12 +11,6 @@ namespace codesign::fem {
 namespace {
 
 constexpr int kMaxSteps = 12;
-
-// What of nodal vectors free components feel.
-void hold(const Constraints& constraints, Eigen::MatrixXd& nodal) {
-  for (std::size_t d = 0; d < constraints.fixed.size(); ++d)
-    if (constraints.fixed[d]) nodal.row(static_cast<Eigen::Index>(d)).setZero();
-}
 
 // One column of the work.
 struct Descent {
@@ -34,7 +29,7 @@ Eigen::MatrixXd condensed_solution(const CondensedFactor& factor, const TetMesh&
   if (!constraints.displacement.isZero(0.0))
     residual.colwise() -=
         Eigen::VectorXd(internal_forces(mesh, material, constraints.displacement).sum);
-  hold(constraints, residual);
+  residual = felt(constraints, std::move(residual));
   std::vector<Descent> active;
   for (Eigen::Index i = 0; i < loads.cols(); ++i)
     if (!residual.col(i).isZero(0.0)) active.push_back({i, loads.col(i).norm()});
@@ -54,7 +49,7 @@ Eigen::MatrixXd condensed_solution(const CondensedFactor& factor, const TetMesh&
       active[k].last = now;
     }
     InternalForces forces = internal_forces(mesh, material, direction(Eigen::all, columns));
-    hold(constraints, forces.sum);
+    forces.sum = felt(constraints, std::move(forces.sum));
     for (std::size_t k = 0; k < active.size(); ++k) {
       const auto way = direction.col(columns[k]);
       const auto resisted = forces.sum.col(static_cast<Eigen::Index>(k));

@@ -155,14 +155,6 @@ struct StaticSystem::Data {
     return nodal_columns(pattern, solve_free(gather(force), iterations));
   }
 
-  // What of a nodal vector (3 n) free components feel.
-  Eigen::VectorXd felt(const Eigen::VectorXd& nodal) const {
-    Eigen::VectorXd free = nodal;
-    for (std::size_t d = 0; d < part->constraints.fixed.size(); ++d)
-      if (part->constraints.fixed[d]) free[static_cast<int>(d)] = 0.0;
-    return free;
-  }
-
   // One column of loads: (3 n) N, and what they do.
   struct Displaced {
     Eigen::VectorXd displacement, internal;
@@ -185,7 +177,7 @@ struct StaticSystem::Data {
       bool done = true;
       for (Eigen::Index i = 0; i < loads.cols(); ++i) {
         Displaced& one = all[static_cast<std::size_t>(i)];
-        const Eigen::VectorXd left = felt(loads.col(i) - forces.sum.col(i));
+        const Eigen::VectorXd left = felt(part->constraints, loads.col(i) - forces.sum.col(i));
         const double scale = std::max(loads.col(i).norm(), forces.size.col(i).norm());
         one.residual = scale > 0.0 ? left.norm() / scale : 0.0;
         if (one.residual <= tolerance || equations == 0) continue;
@@ -253,7 +245,8 @@ struct StaticSystem::Data {
   // A load that no free component feels would silently do nothing.
   void require_felt(const Eigen::VectorXd& load, std::size_t i, std::size_t count) const {
     const double size = load.cwiseAbs().maxCoeff();
-    if (size == 0.0 || felt(load).cwiseAbs().maxCoeff() > kRoundOff * size) return;
+    if (size == 0.0 || felt(part->constraints, load).cwiseAbs().maxCoeff() > kRoundOff * size)
+      return;
     throw ModelError("load " + std::to_string(i + 1) + " of " + std::to_string(count) +
                      " acts on held faces only and has no effect: move it off the supports, or "
                      "hold less");

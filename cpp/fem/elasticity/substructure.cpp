@@ -39,10 +39,8 @@ Constraints among(const Constraints& constraints, const TetMesh& elements) {
   return inside;
 }
 
-// Flags of the elements that are not among the given ones, for each group of them that hangs
-// together by nodes.
-std::vector<std::vector<char>> groups_of_others(const TetMesh& mesh,
-                                                const std::vector<char>& given) {
+// The elements that are not among the given ones, in groups that hang together by nodes.
+std::vector<TetMesh> groups_of_others(const TetMesh& mesh, const std::vector<char>& given) {
   std::vector<int> leader(at(static_cast<int>(mesh.nodes.rows())));
   std::iota(leader.begin(), leader.end(), 0);
   const auto find = [&](int node) {
@@ -63,7 +61,10 @@ std::vector<std::vector<char>> groups_of_others(const TetMesh& mesh,
     }
     groups[at(group)][at(e)] = 1;
   }
-  return groups;
+  std::vector<TetMesh> pieces;
+  for (const std::vector<char>& elements : groups)
+    pieces.push_back(chosen_elements(mesh, elements));
+  return pieces;
 }
 
 std::vector<int> shared_nodes(const std::vector<char>& some, const std::vector<char>& others) {
@@ -101,9 +102,10 @@ void scatter(const NodePattern& pattern, const Eigen::MatrixXf& values, Eigen::M
 }
 
 // The pattern of elements whose shared nodes come last.
-NodePattern order_piece(const TetMesh& elements, const Constraints& inside,
+NodePattern order_piece(const TetMesh& piece, const Constraints& constraints,
                         const std::vector<int>& shared, const FactorLimits& limits) {
-  NodePattern pattern = order_nodes(elements, inside, VertexOrdering::automatic, {{shared}, true});
+  NodePattern pattern =
+      order_nodes(piece, among(constraints, piece), VertexOrdering::automatic, {{shared}, true});
   if (!factor_fits(pattern, limits))
     throw MemoryLimitError("the factor of a piece of the part is larger than its limits");
   return pattern;
@@ -125,12 +127,11 @@ SingleFactor factorize_reshaped(const KeptElements& kept, const TetMesh& mesh,
 
 }  // namespace
 
-Substructure::Substructure(const TetMesh& mesh, const std::vector<char>& elements,
-                           const Material& material, const Constraints& constraints,
-                           const std::vector<int>& shared, const FactorLimits& limits)
-    : pattern_(order_piece(chosen_elements(mesh, elements),
-                           among(constraints, chosen_elements(mesh, elements)), shared, limits)),
-      factor_(pattern_, assemble_stiffness(chosen_elements(mesh, elements), material, pattern_),
+Substructure::Substructure(const TetMesh& piece, const Material& material,
+                           const Constraints& constraints, const std::vector<int>& shared,
+                           const FactorLimits& limits)
+    : pattern_(order_piece(piece, constraints, shared, limits)),
+      factor_(pattern_, assemble_stiffness(piece, material, pattern_),
               count_free(constraints, shared)) {}
 
 double Substructure::bytes() const {
@@ -172,10 +173,10 @@ std::shared_ptr<const KeptElements> keep_elements(const TetMesh& mesh, std::vect
                                                   const FactorLimits& limits) {
   const TetMesh chosen = chosen_elements(mesh, reshaped);
   const std::vector<char> in_reshaped = nodes_of(chosen);
-  const std::vector<std::vector<char>> others = groups_of_others(mesh, reshaped);
+  const std::vector<TetMesh> others = groups_of_others(mesh, reshaped);
   CoupledNodes coupled;
-  for (const std::vector<char>& elements : others)
-    coupled.groups.push_back(shared_nodes(in_reshaped, nodes_of(chosen_elements(mesh, elements))));
+  for (const TetMesh& piece : others)
+    coupled.groups.push_back(shared_nodes(in_reshaped, nodes_of(piece)));
   auto kept = std::make_shared<KeptElements>();
   kept->pattern =
       order_nodes(chosen, among(constraints, chosen), VertexOrdering::automatic, coupled);
@@ -184,8 +185,8 @@ std::shared_ptr<const KeptElements> keep_elements(const TetMesh& mesh, std::vect
     std::sort(shared.begin(), shared.end(), [&](int a, int b) {
       return kept->pattern.position[at(a)] < kept->pattern.position[at(b)];
     });
-    kept->pieces.push_back({{mesh, others[p], material, constraints, shared, limits},
-                            free_components(constraints, shared)});
+    kept->pieces.push_back(
+        {{others[p], material, constraints, shared, limits}, free_components(constraints, shared)});
   }
   kept->reshaped = std::move(reshaped);
   return kept;

@@ -20,11 +20,10 @@ namespace codesign::fem {
 // nodes that they share with others, its Schur complement.
 class Substructure {
  public:
-  // elements: flags of the mesh's tetrahedra. shared: nodes. Throws MemoryLimitError where the
-  // factor is not within the limits, SolverError where single precision does not resolve it.
-  Substructure(const TetMesh& mesh, const std::vector<char>& elements, const Material& material,
-               const Constraints& constraints, const std::vector<int>& shared,
-               const FactorLimits& limits);
+  // piece: those elements, with all nodes of the mesh. shared: nodes. Throws MemoryLimitError where
+  // the factor is not within the limits, SolverError where single precision does not resolve it.
+  Substructure(const TetMesh& piece, const Material& material, const Constraints& constraints,
+               const std::vector<int>& shared, const FactorLimits& limits);
 
   // (k, k) N/m, of the free components of the shared nodes, in their order; its lower triangle.
   const Eigen::MatrixXf& stiffness() const { return factor_.complement(); }
