@@ -54,7 +54,8 @@ def print_evaluation(evaluation: Evaluation) -> None:
     table = Table(show_header=False, box=None, pad_edge=False)
     for group in (evaluation.objectives, evaluation.constraints):
         for key, value in group.items():
-            table.add_row(key, _quantity(evaluation, key).text(value))
+            known = _quantity(evaluation, key)
+            table.add_row(known.name, known.text(value))
     for name, part in evaluation.parts.items():
         table.add_row(
             name,
@@ -160,9 +161,9 @@ def print_tolerances(found: Tolerances) -> None:
         out.print(f"{made.role}  {design}: {made.feasible} of {made.samples} samples are feasible{verdict}")
         table = Table("", "least", "5 %", "median", "95 %", "largest", box=None, pad_edge=False)
         for name, spread in made.numbers.items():
-            row = (spread.least, spread.low, spread.median, spread.high, spread.most)
             known = quantity(name)
-            table.add_row(_head(known), *(f"{known.shown(value):.5g}" for value in row))
+            row = sorted(map(known.shown, (spread.least, spread.low, spread.median, spread.high, spread.most)))
+            table.add_row(_head(known), *(f"{value:.5g}" for value in row))
         out.print(table)
         for reason in made.reasons:
             out.print(f"  {reason}")
@@ -304,8 +305,8 @@ def _front_table(rows: Sequence[Record], variables: Sequence[str]) -> Table:
 
 
 def _head(known: Quantity) -> str:
-    """A quantity's key with its unit, for tables."""
-    return f"{known.key} [{known.unit}]" if known.unit else known.key
+    """What a quantity is called, with its unit, for tables."""
+    return f"{known.name} [{known.unit}]" if known.unit else known.name
 
 
 def _print_nothing_feasible(evaluations: Sequence[Evaluation]) -> None:

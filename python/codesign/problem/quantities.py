@@ -25,7 +25,8 @@ MINUS = "-"  # before a key: the quantity is maximized, its negative minimized
 class Quantity:
     """A number shown to people: its key in an Evaluation, its name in words, its unit, and what it means.
 
-    factor: from the SI value that is stored to `unit`. path: where the number stands in the document of an evaluation;
+    factor: from the SI value that is stored to `unit`; negative for a number to be maximized, which is stored with a
+    minus (its key has one, too) and shown without. path: where the number stands in the document of an evaluation;
     empty for the members of an objective family and for clearances, which the chain puts there under their key.
     """
 
@@ -38,17 +39,17 @@ class Quantity:
 
     @property
     def maximized(self) -> bool:
-        """Whether the number under `key` is the negative of what people name, since it is maximized."""
+        """Whether more is better: the number under `key` is then the negative of what is shown."""
         return self.key.startswith(MINUS)
 
     @property
     def name(self) -> str:
-        """Label of the number that people name: without the minus of a maximized one."""
-        return self.label.removeprefix("−") if self.maximized else self.label
+        """What a study calls it: the key without the minus of a maximized number."""
+        return self.key.removeprefix(MINUS)
 
     @property
     def sign(self) -> float:
-        """From a stored or shown value to the number that `name` is of: -1 for a maximized one."""
+        """From a shown value to one of which less is better: -1 for a maximized one."""
         return -1.0 if self.maximized else 1.0
 
     @property
@@ -57,7 +58,7 @@ class Quantity:
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
     def shown(self, value: float) -> float:
-        """A stored value [SI] in `unit`."""
+        """A stored value [SI] in `unit`, without the minus that a maximized one is stored with."""
         return self.factor * value
 
     def text(self, value: float, digits: int = 5) -> str:
@@ -229,7 +230,7 @@ def quantity(key: str, family: str = "rms") -> Quantity:
     """
     if key.startswith(MINUS):
         positive = quantity(key[1:], family)
-        return replace(positive, key=key, label=f"−{positive.label}", meaning=f"Maximized. {positive.meaning}", path="")
+        return replace(positive, key=key, factor=-positive.factor, meaning=f"Maximized. {positive.meaning}", path="")
     known = QUANTITIES.get(key) or _by_path(key) or _of_a_part(key) or _own(key)
     if key in FAMILY and family != "rms":
         unit = "" if key in UNITLESS_IN.get(family, ()) else known.unit

@@ -35,15 +35,15 @@ class Reached:
     """What a run's front is worth beside the others.
 
     volume: hypervolume of it and the original in the box of all. share: its gain over the original as a part of that of
-    the run that the others are compared with, None where there is no original or no gain. lowest: (m,) of each
-    objective. unbeaten: designs of its front that no other run's design beats.
+    the run that the others are compared with, None where there is no original or no gain. best: (m,) of each objective,
+    as people read it. unbeaten: designs of its front that no other run's design beats.
     """
 
     name: str
     evaluated: int
     count: int
     unbeaten: int
-    lowest: Matrix
+    best: Matrix
     volume: float
     share: float | None
 
@@ -90,7 +90,7 @@ def reached(run: ReportData) -> list[Reached]:
             each.evaluated,
             len(each.values),
             int(best[end - len(each.values) : end].sum()),
-            each.values.min(axis=0),
+            run.signs * each.values.min(axis=0),
             volume,
             (volume - start) / gain if len(original) and gain > 0.0 else None,
         )

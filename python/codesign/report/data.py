@@ -126,8 +126,13 @@ class ReportData:
         return tuple(o.key for o in self.objectives)
 
     def vector(self, evaluation: Evaluation) -> Matrix:
-        """Objectives (m,) of an evaluation, each in the unit that its quantity is shown in; NaN where it has none."""
-        return np.array([o.shown(evaluation.objectives.get(o.key, np.nan)) for o in self.objectives])
+        """Objectives (m,) of an evaluation, of which less is better, in the units shown; NaN where unknown."""
+        return self.signs * [o.shown(evaluation.objectives.get(o.key, np.nan)) for o in self.objectives]
+
+    @cached_property
+    def signs(self) -> Matrix:
+        """(m,) from `vector` and `values` to the objectives as people read them, and back: -1 for a maximized one."""
+        return np.array([o.sign for o in self.objectives])
 
     @cached_property
     def values(self) -> Matrix:
@@ -179,6 +184,11 @@ class ReportData:
     def subject(self) -> Evaluation | None:
         """The design that sentences about the run as a whole are about: the recommended one, else the original."""
         return self.baseline if self.recommended is None else self.entries[self.recommended].evaluation
+
+    @property
+    def flies(self) -> bool:
+        """Whether designs are flown: a study may judge parts alone."""
+        return any(entry.evaluation.flight for entry in self.entries)
 
     @property
     def subject_words(self) -> DesignWords:
@@ -258,7 +268,7 @@ class ReportData:
         return late_growth(self.values, self.feasible, self.front)
 
     def view(self, k: int) -> tuple[float, float] | None:
-        """Range of objective `k` that shows the fronts and the original, and as much again; outliers lie outside."""
+        """Range of objective `k`, as people read it: fronts, original, and as much again; outliers lie outside."""
         shown = [float(self.values[i, k]) for i in {*self.front, *self.choices}]
         shown += [float(value) for other in self.compared for value in other.values[:, k]]
         if self.baseline_vector is not None:
@@ -270,7 +280,8 @@ class ReportData:
         near = feasible[(feasible >= min(shown) - wide) & (feasible <= max(shown) + wide)].tolist()
         low, high = min(shown + near), max(shown + near)
         margin = 0.07 * (high - low) or 0.05 * abs(high) or 1.0
-        return low - margin, high + margin
+        low, high = sorted((self.objectives[k].sign * (low - margin), self.objectives[k].sign * (high + margin)))
+        return low, high
 
     def gain(self, position: int) -> Matrix | None:
         """Relative change (m,) of each objective from the baseline to an entry, negative is better; NaN from zero."""
@@ -297,7 +308,7 @@ class ReportData:
         for objective in self.objectives:
             if objective.key in self.best:
                 chosen.setdefault(
-                    f"{'highest' if objective.maximized else 'lowest'} {objective.name.lower()}",
+                    f"{'highest' if objective.maximized else 'lowest'} {objective.label.lower()}",
                     self.entries[self.best[objective.key]].evaluation,
                 )
         if self.baseline is not None:

@@ -23,7 +23,7 @@ def evidence(run: ReportData, validation: Validation | None, k: int) -> Evidence
     """What is known of the change of objective `k` from the original to the recommended design."""
     changes = _changes(run, validation, run.objectives[k].key)
     if not changes:
-        return Evidence("", "no other flights, no error estimate")
+        return Evidence("", "no other flights, no error estimate" if run.flies else "")
     low, high = min(changes), max(changes)
     first, last = sorted(run.objectives[k].sign * change for change in (low, high))
     flights = plural(len(changes), "other flight")

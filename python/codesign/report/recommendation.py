@@ -81,7 +81,7 @@ def passed_over(run: ReportData) -> str:
 def _best(run: ReportData, position: int) -> str:
     """The only objective of a design, with its unit."""
     (objective,) = run.objectives
-    return objective.text(objective.sign * run.entries[position].evaluation.objectives[objective.key], 4)
+    return objective.text(run.entries[position].evaluation.objectives[objective.key], 4)
 
 
 def price(run: ReportData) -> str:
@@ -93,7 +93,7 @@ def price(run: ReportData) -> str:
         best, here = run.values[run.choices, k].min(), run.values[run.recommended, k]
         if best != 0 and (here - best) / abs(best) > EQUAL:
             side = "below the highest" if objective.maximized else "above the lowest"
-            lost.setdefault(side, []).append(f"{objective.name.lower()} {100 * (here - best) / abs(best):.1f}\u202f%")
+            lost.setdefault(side, []).append(f"{objective.label.lower()} {100 * (here - best) / abs(best):.1f}\u202f%")
     told = "; ".join(f"{listed(names)} {side} among them" for side, names in lost.items())
     return f"Its price: {told}." if lost else "It is also the best in every single objective."
 
@@ -181,7 +181,7 @@ def as_made(run: ReportData) -> str:
         for name, spread in found.numbers.items()
         if name.endswith(".safety_factor")
     ]
-    labels = {objective.key: objective.name.lower() for objective in run.objectives}
+    labels = {objective.key: objective.label.lower() for objective in run.objectives}
     for name, spread in found.numbers.items():
         if name in labels and spread.median:
             low, high = sorted((spread.low / spread.median, spread.high / spread.median))

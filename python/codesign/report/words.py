@@ -71,9 +71,17 @@ def searched(run: ReportData) -> str:
 
 def aims_in_words(run: ReportData) -> str:
     """`lower mass and power, and raise stiffness`."""
-    lowered = listed([o.name.lower() for o in run.objectives if not o.maximized])
-    raised = listed([o.name.lower() for o in run.objectives if o.maximized])
+    lowered = listed([o.label.lower() for o in run.objectives if not o.maximized])
+    raised = listed([o.label.lower() for o in run.objectives if o.maximized])
     return ", and ".join(text for text in (lowered and f"lower {lowered}", raised and f"raise {raised}") if text)
+
+
+def better_side(run: ReportData) -> str:
+    """Which end of an objective's axis is the better one: `Lower is better, of stiffness higher`."""
+    raised = [o.label.lower() for o in run.objectives if o.maximized]
+    if len(raised) == len(run.objectives):
+        return "Higher is better"
+    return "Lower is better" + (f", of {listed(raised)} higher" if raised else "")
 
 
 def combinations(run: ReportData) -> int:
@@ -112,7 +120,7 @@ def _changes(changes: Sequence[tuple[Quantity, float]]) -> str:
     """`lowers mass by 3.0 % and raises stiffness by 2.0 %` of changes of minimized numbers."""
     told = []
     for verb, sense in (("lowers", -1.0), ("raises", 1.0)):
-        names = [f"{o.name.lower()} by {100 * abs(g):.1f}\u202f%" for o, g in changes if o.sign * g * sense > 0]
+        names = [f"{o.label.lower()} by {100 * abs(g):.1f}\u202f%" for o, g in changes if o.sign * g * sense > 0]
         if names:
             told.append(f"{verb} {listed(names)}")
     return " and ".join(told)

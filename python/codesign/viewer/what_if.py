@@ -76,7 +76,7 @@ def _line(run: ReportData, key: str, prediction: Prediction, error: float, poor:
     shown = shown_quantity(run, key)
     band = ""
     if prediction.bands:
-        low, high = (number(shown.shown(end)) for end in prediction.bands[-1])
+        low, high = (number(end) for end in sorted(map(shown.shown, prediction.bands[-1])))
         band = f" (90 %: {low} … {high})"
     limit = ""
     if key in run.limits and key not in run.keys:

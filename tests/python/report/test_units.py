@@ -9,11 +9,13 @@ import pytest
 from codesign.problem.design_space import Variable
 from codesign.problem.evaluation import Evaluation
 from codesign.problem.quantities import quantity
+from codesign.report.comparison import ComparedRun
 from codesign.report.data import Entry, ReportData
+from codesign.report.page.comparison import comparison_table
 from codesign.report.page.document import page_document
 from codesign.report.page.summary import summary
 from codesign.report.recommendation import left_out, passed_over, price
-from codesign.report.words import caveats, gained, searched
+from codesign.report.words import better_side, caveats, gained, searched
 from codesign.search.progress import Progress, describe
 
 KEYS = ("mass", "max_displacement")
@@ -50,7 +52,7 @@ def test_a_displacement_in_millimeters_is_millimeters_everywhere():
 def test_a_text_of_a_quantity_has_its_unit():
     assert quantity("max_displacement").text(0.0008015) == "0.8015 mm"
     assert quantity("parts.arm.max_displacement").text(0.0008015) == "0.8015 mm"
-    assert quantity("-first_frequency").text(-80.0) == "-80 Hz"
+    assert quantity("-first_frequency").text(-80.0) == "80 Hz"
     assert quantity("safety_factor").text(2.7) == "2.7"
 
 
@@ -118,9 +120,18 @@ def test_a_maximized_number_reads_forward():
     page = summary(run)
     assert "+25.0\u202f%" in page
     assert "80 → 100 Hz" in page
+    assert "validate" not in page and "other flights" not in page  # parts alone
     assert "−" not in re.sub(r"<(script|style).*?</\1>", "", page, flags=re.S)
     both = replace(run, entries=entries, baseline=None)
     assert "first natural frequency" in price(both)
     assert "below the highest among them" in price(both)
-    (first, second) = page_document(run)["objectives"]
-    assert (first["sign"], second["sign"], second["name"]) == (1.0, -1.0, "First natural frequency")
+    document = page_document(run)
+    (first, second) = document["objectives"]
+    assert (first["sign"], second["sign"], second["label"]) == (1.0, -1.0, "First natural frequency")
+    assert document["designs"][0]["f"] == [1.0, 100.0]
+    low, high = second["view"]
+    assert 0.0 < low < 80.0 and 100.0 < high < 120.0
+    assert better_side(run) == "Lower is better, of first natural frequency higher"
+    other = ComparedRun("other", 3, (4,), run.values[:1] * [1.0, 1.2])
+    compared = comparison_table(replace(run, compared=(other,)))
+    assert "Highest first natural frequency" in compared and "120 Hz <small>+50" in compared

@@ -164,7 +164,7 @@ class OrderPage:
         known = objective_quantities(tuple(values), self.order.study.config)
         if not known:
             return []
-        rows = [[q.name, f"{q.sign * q.shown(values[q.key]):.4g}", q.unit] for q in known]
+        rows = [[q.label, f"{q.shown(values[q.key]):.4g}", q.unit] for q in known]
         return ["## What the design was chosen for\n", *_table(["number", "value", "unit"], rows)]
 
     def _strength(self) -> list[list[Any]]:

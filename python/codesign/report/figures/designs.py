@@ -13,7 +13,7 @@ from codesign.report.data import ReportData
 from codesign.report.figures import style
 from codesign.report.figures.data import FigureData
 from codesign.report.pareto import Matrix
-from codesign.report.words import number
+from codesign.report.words import better_side, number
 
 COLORS = (style.INK, style.BLUE, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
 
@@ -36,7 +36,7 @@ def draw_chosen(run: ReportData, shown: dict[str, Evaluation]) -> Any:
     figure = Figure(figsize=(style.PAGE, 0.9 + 0.34 * len(names)))
     panels = np.atleast_1d(figure.subplots(2, 1, height_ratios=[split, len(names) - split]))
     for axes, part, title in zip(
-        panels, (slice(0, split), slice(split, None)), ("parameters", "objectives, lower is better"), strict=True
+        panels, (slice(0, split), slice(split, None)), ("Parameters", f"Objectives. {better_side(run)}"), strict=True
     ):
         _lines(axes, names[part], _ends(run, low, high)[part])
         axes.set_title(title)
@@ -116,7 +116,9 @@ def parallel(data: FigureData) -> Any:
 
 def _row(run: ReportData, evaluation: Evaluation) -> Matrix:
     """Parameters and objectives of a design in one row."""
-    return np.concatenate([[v.position(evaluation.design[v.name]) for v in run.variables], run.vector(evaluation)])
+    return np.concatenate(
+        [[v.position(evaluation.design[v.name]) for v in run.variables], run.signs * run.vector(evaluation)]
+    )
 
 
 def _names(run: ReportData) -> list[str]:
@@ -131,7 +133,7 @@ def _scales(run: ReportData) -> tuple[list[str], Matrix, Matrix]:
     rows = [run.values[i] for i in run.front]
     if run.baseline_vector is not None:
         rows.append(run.baseline_vector)
-    seen = np.array(rows)
+    seen = run.signs * rows
     low = np.concatenate([[v.minimum for v in run.variables], seen.min(axis=0)])
     high = np.concatenate([[v.maximum for v in run.variables], seen.max(axis=0)])
     return _names(run), low, np.where(high > low, high, low + 1.0)

@@ -49,7 +49,7 @@ def projections(data: FigureData) -> Any:
 
 def draw_projection(axes: Any, run: ReportData, x: int, y: int, color: int | None = None) -> Any:
     """Designs in objectives `x` and `y`; the front's markers are colored by objective `color`. Returns them."""
-    values = run.values
+    values = run.signs * run.values
     known = np.isfinite(values).all(axis=1)
     skipped = known & (run.statuses == "skipped")
     infeasible = known & ~run.feasible & ~skipped
@@ -69,12 +69,18 @@ def draw_projection(axes: Any, run: ReportData, x: int, y: int, color: int | Non
     for k, other in enumerate(run.compared):
         tint = style.COMPARED[k % len(style.COMPARED)]
         axes.scatter(
-            other.values[:, x], other.values[:, y], 16, tint, marker="^", edgecolors="white", linewidths=0.3,
+            *(run.signs * other.values)[:, [x, y]].T, 16, tint, marker="^", edgecolors="white", linewidths=0.3,
             label=f"best compromise of {other.name}", zorder=3,
         )  # fmt: skip
     if run.baseline_vector is not None:
         axes.scatter(
-            *run.baseline_vector[[x, y]], 34, style.ORIGINAL, marker="D", edgecolors="white", label="original", zorder=4
+            *(run.signs * run.baseline_vector)[[x, y]],
+            34,
+            style.ORIGINAL,
+            marker="D",
+            edgecolors="white",
+            label="original",
+            zorder=4,
         )
     if run.recommended is not None:
         axes.scatter(

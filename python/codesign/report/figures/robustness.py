@@ -34,8 +34,8 @@ def validation(data: FigureData) -> Any:
     spread = np.random.default_rng(1)  # across, so that points do not hide each other
     for axes, objective in zip(panels, data.run.objectives, strict=True):
         for y, role in enumerate(roles):
-            disturbed = np.array(list(changes[objective.key, role, True].values()))
-            calm = np.array(list(changes[objective.key, role, False].values()))
+            disturbed = objective.sign * np.array(list(changes[objective.key, role, True].values()))
+            calm = objective.sign * np.array(list(changes[objective.key, role, False].values()))
             _strip(axes, y, disturbed, calm, spread)
         axes.axvline(0.0, color=style.ORIGINAL, linewidth=1.0, label="original")
         axes.set_title(style.wrapped(objective.label, style.PAGE / style.COLUMNS - 0.4))

@@ -21,7 +21,6 @@ function number(value, digits = 4) {
 const plain = value => typeof value === 'string' ? escaped(value) : String(value).replace('-', '−');
 const percent = (value, digits = 1) => !known(value) ? '' :
   (value > 0 ? '+' : value < 0 ? '−' : '±') + Math.abs(100 * value).toFixed(digits) + ' %';
-const sense = value => !known(value) || Math.abs(value) < 5e-4 ? '' : value < 0 ? 'good' : 'bad';
 const withUnit = (text, unit) => unit ? `${text} <small>${escaped(unit)}</small>` : text;
 const name = design => design === original && design.id === null ? 'Original' : `Design ${design.id}`;
 
@@ -30,7 +29,7 @@ function roles(design) {
   const index = places.get(design), found = [];
   if (index === report.recommended) found.push('recommended');
   if (design === original) found.push('original');
-  report.objectives.forEach(o => { if (report.best[o.key] === index) found.push((o.sign < 0 ? 'highest ' : 'lowest ') + o.name.toLowerCase()); });
+  report.objectives.forEach(o => { if (report.best[o.key] === index) found.push((o.sign < 0 ? 'highest ' : 'lowest ') + o.label.toLowerCase()); });
   if (design.front && !found.includes('recommended')) found.push('best compromise');
   return found;
 }
@@ -39,13 +38,10 @@ function roles(design) {
 const lacking = design => `<span title="${escaped(design.reason || 'not computed for this design')}">–</span>`;
 const below = (c, value) => known(c.floor) && known(value) && value < c.floor;
 
-/** Objective `k` of a design as people name it: what is maximized is stored with a minus. */
-const named = (design, k) => report.objectives[k].sign * design.f[k];
-
 /** Relative change of objective `k` from the original; null where either is unknown. */
 function change(design, k) {
   if (!original || design === original || !known(design.f[k]) || !original.f[k]) return null;
-  return report.objectives[k].sign * (design.f[k] - original.f[k]) / Math.abs(original.f[k]);
+  return (design.f[k] - original.f[k]) / Math.abs(original.f[k]);
 }
 
 const font = () => ({family: getComputedStyle(document.body).fontFamily, size: 12.5, color: color('muted')});

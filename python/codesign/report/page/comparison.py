@@ -28,8 +28,8 @@ def comparison_table(run: ReportData) -> str:
     rows = reached(run)
     if not rows:
         return ""
-    lowest = [f"Lowest {o.label[:1].lower()}{o.label[1:]}" for o in run.objectives]
-    heads = "".join(f'<th scope="col">{escape(head)}</th>' for head in (*HEADS, *lowest, "Hypervolume", "Of the gain"))
+    best = [f"{'Highest' if o.maximized else 'Lowest'} {o.label[:1].lower()}{o.label[1:]}" for o in run.objectives]
+    heads = "".join(f'<th scope="col">{escape(head)}</th>' for head in (*HEADS, *best, "Hypervolume", "Of the gain"))
     body = "".join(_row(run, row) for row in rows)
     text = (
         "Hypervolume of a front together with the original, in the box that all fronts and the original span, a tenth "
@@ -45,9 +45,10 @@ def _row(run: ReportData, row: Reached) -> str:
     cells = [escape(row.name), f"{row.evaluated:,}", str(row.count), str(row.unbeaten)]
     original = run.baseline_vector
     for k, objective in enumerate(run.objectives):
-        value = f"{words.number(row.lowest[k])} {escape(objective.unit)}"
+        value = f"{words.number(row.best[k])} {escape(objective.unit)}"
         if original is not None and original[k] != 0.0:
-            value += f" <small>{words.percent((row.lowest[k] - original[k]) / np.abs(original[k]))}</small>"
+            change = (row.best[k] - run.signs[k] * original[k]) / np.abs(original[k])
+            value += f" <small>{words.percent(change)}</small>"
         cells.append(value)
     share = "–" if row.share is None else f"{100.0 * row.share:.0f}\u202f%"
     cells += [f"{row.volume:.4f}", share]

@@ -15,7 +15,7 @@ function card(i) {
       `<div class="track" role="img" aria-label="${escaped(range)}">${was}<i style="left:${place(d.x[k])}%"></i></div></div>`;
   });
   const objectives = report.objectives.map((o, k) =>
-    `<div class="row"><span>${escaped(o.name)}</span><b>${withUnit(number(named(d, k)), o.unit)}<span class="delta">${percent(change(d, k))}</span></b></div>`);
+    `<div class="row"><span>${escaped(o.label)}</span><b>${withUnit(number(d.f[k]), o.unit)}<span class="delta">${percent(change(d, k))}</span></b></div>`);
   const constraint = (c, k) => {
     const verdict = below(c, d.c[k]) ? '<span class="bad"> overlap</span>' : !known(d.c[k]) || !c.rule ? '' : d.g[k] > 0 ? '<span class="bad"> violated</span>' : '<span class="good"> ✓</span>';
     return `<div class="row" title="${escaped(c.meaning)}"><span>${escaped(c.label)} <small>${escaped(c.rule)}</small></span><b>${withUnit(number(d.c[k], 3), c.unit)}${verdict}</b></div>`;

@@ -73,7 +73,11 @@ def page_document(
         "best": run.best,
         "progress": progress(run),
         "compared": [
-            {"name": other.name, "ids": list(other.ids), "f": [[_rounded(x) for x in row] for row in other.values]}
+            {
+                "name": other.name,
+                "ids": list(other.ids),
+                "f": [[_rounded(x) for x in run.signs * row] for row in other.values],
+            }
             for other in run.compared
         ],
         "details": details or {},
@@ -83,8 +87,8 @@ def page_document(
 
 
 def _objective(o: Quantity) -> dict[str, Any]:
-    """name, sign: of what is maximized, the number that people name is the negative of the one that is kept."""
-    return {"key": o.key, "label": o.label, "name": o.name, "sign": o.sign, "unit": o.unit, "title": o.title}
+    """sign: -1 if more is better."""
+    return {"key": o.key, "label": o.label, "sign": o.sign, "unit": o.unit, "title": o.title}
 
 
 def _row(
@@ -102,7 +106,7 @@ def _row(
         "x": [evaluation.design[v.name] for v in run.variables],
         "status": STATUS[evaluation.status],
         "reason": evaluation.reason,
-        "f": [_rounded(value) for value in run.vector(evaluation)],
+        "f": [_rounded(value) for value in run.signs * run.vector(evaluation)],
         "c": [_shown(quantity(k), evaluation.constraints) for k in constraints],
         "g": [_rounded(_violation(run, evaluation, k)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],

@@ -47,7 +47,7 @@ const sayThinned = () => { element('front-thinned').textContent = front.thinned;
 
 function hoverText(i) {
   const d = designs[i];
-  const values = report.objectives.map((o, k) => `${escaped(o.name)} <b>${number(named(d, k))}</b> ${escaped(o.unit)} ${percent(change(d, k))}`);
+  const values = report.objectives.map((o, k) => `${escaped(o.label)} <b>${number(d.f[k])}</b> ${escaped(o.unit)} ${percent(change(d, k))}`);
   const theta = report.variables.map((v, k) => `${escaped(v.label.toLowerCase())} ${plain(d.x[k])} ${escaped(v.unit)}`).join(', ');
   return `<b>${name(d)}</b>  ${escaped(roles(d).join(', ') || STATUS[d.status])}<br>${values.join('<br>')}<br>${theta}`;
 }

@@ -11,6 +11,7 @@ from codesign.report.page.comparison import comparison_table, key_of_runs
 from codesign.report.page.validation import validation_tables
 from codesign.report.page.what_if import section_text
 from codesign.report.validation import Validation
+from codesign.report.words import better_side
 from codesign.surrogate.what_if import WhatIf
 
 SHOWN_IDS = 8  # of designs that share a reason
@@ -84,9 +85,7 @@ def _trade_offs(run: ReportData) -> Block:
         f"{CARD}</div>{ANNOUNCEMENT}"
     )
     third = " Color is the remaining objective." if len(run.objectives) > 2 else ""
-    raised = any(o.maximized for o in run.objectives)
-    better = "Lower is better on both axes" + (", where a maximized number has a minus before it" if raised else "")
-    text = f"{better}.{third} Click a design to see it; drag to zoom, double-click to zoom back."
+    text = f"{better_side(run)}.{third} Click a design to see it; drag to zoom, double-click to zoom back."
     return _block("trade-offs", "Trade-offs", "Trade-offs", text, body, controls)
 
 
@@ -95,7 +94,7 @@ def _weights(run: ReportData) -> str:
     if len(run.objectives) < 2 or len(run.choices) < 2:
         return ""
     return (
-        '<h3>What counts for you</h3><p class="count">Each objective counts from its lowest to its highest value among '
+        '<h3>What counts for you</h3><p class="count">Each objective counts from its best to its worst value among '
         "the best compromises that may be built; preferred is the design whose largest weighted loss is least.</p>"
         '<div id="weights" class="sliders"></div><p id="weights-choice" aria-live="polite"></p>'
     )

@@ -55,7 +55,7 @@ def _tile(run: ReportData, k: int, known: Evidence) -> str:
         trust = f"<p>{escape(known.text)}</p>"
     size = "big" if known.sense else "big open"
     return (
-        f'<div class="tile" title="{escape(objective.meaning)}"><dt>{escape(objective.name)}</dt>'
+        f'<div class="tile" title="{escape(objective.meaning)}"><dt>{escape(objective.label)}</dt>'
         f'<dd class="{size} {known.sense}">{big}</dd><dd><p>{change}</p>{trust}</dd></div>'
     )
 
@@ -63,7 +63,7 @@ def _tile(run: ReportData, k: int, known: Evidence) -> str:
 def _trust(run: ReportData, validation: Validation | None) -> str:
     """What the changes are of, and how to learn whether they last."""
     flown = run.subject_words.flight
-    if run.baseline_vector is None or validated(run, validation):
+    if run.baseline_vector is None or not run.flies or validated(run, validation):
         return flown
     command = f"codesign validate {shlex.quote(str(run.directory))}"
     return f"{flown} Whether these changes last on other flights is not known: {command}."

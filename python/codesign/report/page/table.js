@@ -13,8 +13,8 @@ function columns() {
   const found = [{head: 'Design', value: d => d.id ?? -1, text: d => d.id === null ? 'original' : d.id}];
   report.variables.forEach((v, k) => found.push({head: v.label, unit: v.unit, text_align: Boolean(v.names), value: d => d.x[k], text: d => plain(d.x[k])}));
   report.objectives.forEach((o, k) => found.push({
-    head: o.name, unit: o.unit, value: d => known(d.f[k]) ? named(d, k) : d.f[k],
-    text: d => known(d.f[k]) ? number(named(d, k)) + (original ? `<small>${percent(change(d, k))}</small>` : '') : lacking(d),
+    head: o.label, unit: o.unit, value: d => d.f[k],
+    text: d => known(d.f[k]) ? number(d.f[k]) + (original ? `<small>${percent(change(d, k))}</small>` : '') : lacking(d),
   }));
   report.constraints.forEach((c, k) => found.push({head: c.label, unit: [c.unit, c.rule].filter(Boolean).join(' '), value: d => d.c[k], text: d => known(d.c[k]) ? `<span class="${below(c, d.c[k]) ? 'bad' : ''}">${number(d.c[k], 3)}</span>` : lacking(d)}));
   found.push({head: 'Remark', text_align: true, value: remark, text: d => escaped(remark(d))});

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from codesign.problem.quantities import words
+from codesign.problem.quantities import Quantity, words
 from codesign.report.data import ReportData
 from codesign.report.validation import ORIGINAL, Validation
 from codesign.report.words import number, percent
@@ -19,16 +19,14 @@ def strips(run: ReportData, validation: Validation | None) -> dict[str, Any] | N
         return None
     roles = [role for role in validation.roles if role != ORIGINAL]
 
-    def points(objective: str, disturbed: bool) -> list[dict[str, Any]]:
+    def points(objective: Quantity, disturbed: bool) -> list[dict[str, Any]]:
         return [
-            {"role": x, "flight": f"{role}, {_flight(case)}", "change": round(change, 6)}
+            {"role": x, "flight": f"{role}, {_flight(case)}", "change": round(objective.sign * change, 6)}
             for x, role in enumerate(roles)
-            for case, change in validation.change(role, objective, disturbed).items()
+            for case, change in validation.change(role, objective.key, disturbed).items()
         ]
 
-    objectives = [
-        {"label": o.label, "calm": points(o.key, False), "disturbed": points(o.key, True)} for o in run.objectives
-    ]
+    objectives = [{"label": o.label, "calm": points(o, False), "disturbed": points(o, True)} for o in run.objectives]
     return {"roles": roles, "objectives": objectives}
 
 
@@ -56,9 +54,8 @@ def _changes(run: ReportData, validation: Validation) -> str:
         cells = [f"<td>{escape(words(role))}</td>", f"<td>{sum(f.completed for f in flown)} of {len(flown)}</td>"]
         for objective in run.objectives:
             noise = validation.noise(role, objective.key)
-            cells += [
-                _change_cell(list(validation.change(role, objective.key, wild).values()), noise) for wild in kinds
-            ]
+            changes = [list(validation.change(role, objective.key, wild).values()) for wild in kinds]
+            cells += [_change_cell(of_kind, noise, objective.sign) for of_kind in changes]
         if role != ORIGINAL:
             rows.append(f"<tr>{''.join(cells)}</tr>")
         else:
@@ -71,16 +68,20 @@ def _changes(run: ReportData, validation: Validation) -> str:
     )
 
 
-def _change_cell(changes: list[float], noise: float | None) -> str:
-    """Mean, least and greatest change; one within the noise of paired seeds is a tie."""
+def _change_cell(changes: list[float], noise: float | None, sign: float = 1.0) -> str:
+    """Mean, least and greatest change; one within the noise of paired seeds is a tie.
+
+    changes: of the number of which less is better; sign: from them to what people read.
+    """
     if not changes:
         return "<td>–</td>"
     mean = float(np.mean(changes))
     if noise is not None and abs(mean) <= noise:
-        return f"<td>tie<small>{percent(mean)}, chance ± {100 * noise:.1f}\u202f%</small></td>"
+        return f"<td>tie<small>{percent(sign * mean)}, chance ± {100 * noise:.1f}\u202f%</small></td>"
     sense = "good" if mean < -5e-4 else "bad" if mean > 5e-4 else ""
-    ends = f"{percent(min(changes))} … {percent(max(changes))}"
-    return f'<td><span class="{sense}">{percent(mean)}</span><small>{ends}</small></td>'
+    low, high = sorted((sign * min(changes), sign * max(changes)))
+    ends = f"{percent(low)} … {percent(high)}"
+    return f'<td><span class="{sense}">{percent(sign * mean)}</span><small>{ends}</small></td>'
 
 
 def _flights(run: ReportData, validation: Validation) -> str:

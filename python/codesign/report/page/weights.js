@@ -1,14 +1,14 @@
 /** Weights of the objectives: the choice that an achievement scalarization prefers (Wierzbicki 1980). */
 const SLIGHTLY = 1e-4;  // share of the sum, which decides between designs whose largest loss is the same
 
-/** Lowest and highest value of each objective among the choices. */
+/** Best and worst value of each objective among the choices. */
 const spans = report.objectives.map((o, k) => {
-  const values = report.choices.map(i => designs[i].f[k]);
-  return [Math.min(...values), Math.max(...values)];
+  const values = report.choices.map(i => designs[i].f[k]), ends = [Math.min(...values), Math.max(...values)];
+  return o.sign < 0 ? ends.reverse() : ends;
 });
 
-/** Objective `k` of a choice from 0, the lowest among the choices, to 1, the highest. */
-const loss = (i, k) => spans[k][1] > spans[k][0] ? (designs[i].f[k] - spans[k][0]) / (spans[k][1] - spans[k][0]) : 0;
+/** Objective `k` of a choice from 0, the best among the choices, to 1, the worst. */
+const loss = (i, k) => spans[k][1] !== spans[k][0] ? (designs[i].f[k] - spans[k][0]) / (spans[k][1] - spans[k][0]) : 0;
 
 /** The choice whose largest weighted loss is least. weights: one for each objective, not all 0. */
 function preferred(weights) {
@@ -24,7 +24,7 @@ function drawPreferred() {
   const sum = weights.reduce((s, w) => s + w, 0);
   weights.forEach((w, k) => { element(`weight-${k}-value`).textContent = sum ? `${Math.round(100 * w / sum)} %` : '–'; });
   if (!sum) { element('weights-choice').textContent = 'Give one of them a weight.'; return; }
-  const i = preferred(weights), gives = report.objectives.map((o, k) => `${escaped(o.name.toLowerCase())} ${number(named(designs[i], k))} ${escaped(o.unit)}`);
+  const i = preferred(weights), gives = report.objectives.map((o, k) => `${escaped(o.label.toLowerCase())} ${number(designs[i].f[k])} ${escaped(o.unit)}`);
   element('weights-choice').innerHTML = `<button type="button" class="link" data-select="${i}">${name(designs[i])}</button>${i === report.recommended ? ', the recommended one' : ''}: ${gives.join(', ')}`;
   ring(6, i);
 }

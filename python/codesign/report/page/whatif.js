@@ -65,7 +65,7 @@ function predicted(number, grid) {
   const whole = Math.hypot(at.deviation, at.noise);
   const [sign, limit] = number.limit ?? [];
   const away = sign ? (number.factor * at.mean - limit) / (Math.abs(number.factor) * whole) : 0;
-  return {mean: shown(at.mean), bands: BANDS.map(k => [shown(at.mean - k * whole), shown(at.mean + k * whole)]), kept: sign ? normal(sign === '>=' ? away : -away) : 1};
+  return {mean: shown(at.mean), bands: BANDS.map(k => [shown(at.mean - k * whole), shown(at.mean + k * whole)].sort((a, b) => a - b)), kept: sign ? normal(sign === '>=' ? away : -away) : 1};
 }
 function completes(grid) {
   const model = whatIf.completed;
@@ -91,9 +91,9 @@ const share = value => value > 0.99 ? '> 99 %' : value < 0.01 ? '< 1 %' : `${Mat
 /** Ends of a number's bar: what was evaluated, without the worst quarter of an objective, and the limit. */
 function barEnds(model) {
   if (!model.ends) {
-    const values = model.values.map(v => model.factor * v).sort((a, b) => a - b);
-    const [low, high] = [values[0], values[Math.floor((model.scaling ? 0.75 : 1) * (values.length - 1))]];
-    const ends = model.limit ? [Math.min(low, model.limit[1]), Math.max(high, model.limit[1])] : [low, high];
+    const values = [...model.values].sort((a, b) => a - b);
+    const shown = [values[0], values[Math.floor((model.scaling ? 0.75 : 1) * (values.length - 1))]].map(v => model.factor * v);
+    const all = model.limit ? [...shown, model.limit[1]] : shown, ends = [Math.min(...all), Math.max(...all)];
     const margin = 0.08 * (ends[1] - ends[0] || 1);
     model.ends = [ends[0] - margin, ends[1] + margin];
   }
