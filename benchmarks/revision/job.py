@@ -110,14 +110,16 @@ def random_designs(study: codesign.Study, count: int) -> list[dict[str, Any]]:
 
 
 def designs(count: int) -> dict[str, float]:
-    """CPU seconds a random design: each part from its case to its stress, and the whole evaluation, nothing cached.
+    """CPU seconds a random design: surfaces and masses, each part from its case to its stress, the whole evaluation.
 
-    A revision that keeps meshes and factors in its processes may keep as much as in a worker of a run.
+    Nothing is cached; a revision that keeps meshes and factors in its processes may keep as much as in a worker of a
+    run. Surfaces and masses are those of a process of their own.
     """
     study = published_study()
     thetas = random_designs(study, count)
     worker_keeps()
-    seconds: dict[str, float] = {}
+    alone = subprocess.run([sys.executable, "-P", __file__, "surfaces", str(count)], check=True, stdout=subprocess.PIPE)
+    seconds: dict[str, float] = json.loads(alone.stdout)
     for name in study.build_parts(thetas[0]):
         forget()
         settings = find("stress_settings")(study.config, name)
@@ -127,6 +129,14 @@ def designs(count: int) -> dict[str, float]:
     forget()
     seconds["evaluate"] = cpu(lambda: [study.evaluate(theta) for theta in thetas]) / count
     return seconds
+
+
+def surfaces(count: int) -> dict[str, float]:
+    """CPU seconds a random design: surfaces and masses of its parts, from the start of a process on."""
+    study = published_study()
+    parts = [part for theta in random_designs(study, count) for part in study.build_parts(theta).values()]
+    whole = cpu(lambda: [(part.surface(), part.mass_properties()) for part in parts])
+    return {"both parts: surface and mass": whole / count}
 
 
 def _analyzed(part: Any, settings: Any) -> None:
@@ -163,6 +173,8 @@ def main() -> None:
     sys.stderr.write(f"{Path(codesign.__file__).parent}, {Path(_core.__file__)}\n")
     if sys.argv[1] == "times":
         print(json.dumps(times()))
+    elif sys.argv[1] == "surfaces":
+        print(json.dumps(surfaces(int(sys.argv[2]))))
     elif sys.argv[1] == "designs":
         print(json.dumps(designs(int(sys.argv[2]))))
     else:

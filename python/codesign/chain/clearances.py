@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from codesign.chain.flight import joint_names
-from codesign.parts.part import Part
+from codesign.parts.part import COARSE_RESOLUTION, Part
 from codesign.robot.clearance import flown_interference
 from codesign.robot.hulls import convex_pieces
 from codesign.transforms import Matrix
@@ -45,5 +45,5 @@ def clearances(
 @functools.lru_cache(maxsize=512)
 def part_pieces(part: Part, slices: int) -> tuple[Matrix, ...]:
     """Convex pieces of a part, part axes [m]; kept (10 kB each), since designs share parts."""
-    solid = part.coarse_solid()  # 0.6 mm inside the largest radius
+    solid = part.shared_solid(COARSE_RESOLUTION)  # 0.6 mm inside the largest radius
     return tuple(convex_pieces(solid.points * MILLIMETER, solid.triangles, slices))

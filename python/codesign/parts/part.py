@@ -17,6 +17,7 @@ from codesign.geometry.mesh_files import write_stl
 from codesign.geometry.profile import Resolution, Vector
 from codesign.geometry.shape import Shape, face_names
 from codesign.geometry.solid import Solid, build_solid
+from codesign.parts.stretch import require_prism, stretched
 from codesign.parts.surface import SurfaceMesh, surface_mesh
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 _PARAMETER = "codesign.parameter"
 COARSE_RESOLUTION = Resolution(segments=24, chord_mm=0.12)  # of the coarsest mesh that mass is extrapolated from
 EXPORT_RESOLUTION = Resolution(segments=4096, chord_mm=0.01)
-SURFACE_RESOLUTION = Resolution(segments=48)
+SURFACE_RESOLUTION = replace(COARSE_RESOLUTION, refine=2)  # of the next finer one: 48 chords on a full circle
 FEM_CHORD_MM = 0.03  # between chord and arc of small circles at 48 segments: stresses do not change with less
 
 
@@ -105,7 +106,8 @@ class Part(ABC):
     def stretched_from(self) -> tuple[Part, _core.Stretch] | None:
         """A part that is this one when stretched where all its cross sections are equal; None: no other is.
 
-        Parts that are stretched from one share meshes in their `stress_case`, and a worker takes them by preference.
+        Parts that are stretched from one share meshes: of surface, mass and clearances, and in their `stress_case`. A
+        worker takes them by preference.
         """
         return None
 
@@ -147,16 +149,19 @@ class Part(ABC):
         """
         return _solid(self, resolution)
 
-    def surface(self, segments: int = 48) -> SurfaceMesh:
-        """Closed surface in meters with named faces; `segments`: chords on a full circle (fewer on small ones)."""
-        return surface_mesh(self.solid(Resolution(segments)))
+    def shared_solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
+        """As `solid`, but stretched from the mesh of another part where there is one; see `stretched_from`.
 
-    def coarse_solid(self) -> Solid:
-        """Closed triangle mesh in mm with 24 chords on a full circle: the coarsest of those that the mass is made of.
-
-        Raises: GeometryError: as `solid`.
+        The same body up to rounding, whatever was made before; flat faces may be divided into other triangles.
         """
-        return _mesh(self, COARSE_RESOLUTION).tidied()
+        return _mesh(self, resolution).tidied()
+
+    def surface(self, segments: int | None = None) -> SurfaceMesh:
+        """Closed surface in meters with named faces.
+
+        segments: chords on a full circle, fewer on small ones; None: 48, `shared_solid`, of which the mass is made too.
+        """
+        return surface_mesh(self.shared_solid() if segments is None else self.solid(Resolution(segments)))
 
     def fem_surface(self, geometry: str = "simplified", segments: int = 48, **variant: Any) -> SurfaceMesh:
         """Closed surface in meters of the shape to be analyzed; `geometry` and `variant` as in `fem_shape`."""
@@ -207,9 +212,9 @@ class MirroredPart(Part):
         """The mirror image of the original's mesh."""
         return self.original.solid(resolution).mirrored(self.axis)
 
-    def coarse_solid(self) -> Solid:
+    def shared_solid(self, resolution: Resolution = SURFACE_RESOLUTION) -> Solid:
         """The mirror image of the original's."""
-        return self.original.coarse_solid().mirrored(self.axis)
+        return self.original.shared_solid(resolution).mirrored(self.axis)
 
     def mass_properties(self) -> MassProperties:
         """Those of the original, mirrored."""
@@ -224,12 +229,23 @@ class MirroredPart(Part):
 @lru_cache(maxsize=8)
 def _solid(part: Part, resolution: Resolution) -> Solid:
     """Mesh of a part; the last ones are kept, since surface and files ask for the same."""
-    return _mesh(part, resolution).tidied()
+    return _checked(part.shape(), resolution, part.through_holes()).tidied()
 
 
-@lru_cache(maxsize=16)
 def _mesh(part: Part, resolution: Resolution) -> Solid:
-    """The same before it is tidied; the last ones are kept, since mass and clearances ask for the same."""
+    """Mesh that many parts share, of the part itself or stretched from that of another; not tidied."""
+    found = part.stretched_from()
+    if found is None:
+        return _made(part, resolution)
+    other, stretch = found
+    solid = _made(other, resolution)
+    require_prism(solid, stretch)
+    return stretched(solid, stretch)
+
+
+@lru_cache(maxsize=256)
+def _made(part: Part, resolution: Resolution) -> Solid:
+    """Mesh of a part as booleans leave it; kept (0.1 MB), since many parts are stretched from it."""
     return _checked(part.shape(), resolution, part.through_holes())
 
 

@@ -11,12 +11,14 @@ import codesign
 from codesign import _core, fem
 from codesign.chain.chain import stress_settings
 from codesign.errors import GeometryError, MemoryLimitError
+from codesign.geometry.mass import volume_moments
 from codesign.geometry.profile import Resolution
 from codesign.geometry.shape import box
-from codesign.geometry.solid import build_solid
+from codesign.geometry.solid import Solid, build_solid
+from codesign.parts import part as part_module
 from codesign.parts.load_case import held_faces, native_case, part_case
-from codesign.parts.part import Part
-from codesign.parts.stretch import RATIO, meshed_length, stretch_mm
+from codesign.parts.part import COARSE_RESOLUTION, Part, _made, _moments
+from codesign.parts.stretch import RATIO, meshed_length, require_prism, stretch_mm
 from codesign.parts.surface import surface_mesh
 from codesign.studies.ironcub.bracket import JetpackBracket
 from codesign.studies.ironcub.forearm import ForearmJetSupport
@@ -137,3 +139,65 @@ def test_a_refined_mesh_is_of_the_parts_own_surface() -> None:
     case.max_refinements = 1
     with pytest.raises(ValueError, match="own surface"):
         _core.analyze_part(case)
+
+
+@pytest.mark.parametrize("part", [JetpackBracket(37.0, 56.0), *LONG_AND_SHORT], ids=lambda part: part.title)
+def test_masses_and_solids_of_stretched_parts_are_their_own(part: Part, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert part.stretched_from() is not None
+    found, solid = part.mass_properties(), part.shared_solid(COARSE_RESOLUTION)
+    monkeypatch.setattr(type(part), "stretched_from", Part.stretched_from)
+    _moments.cache_clear()
+    direct, own = part.mass_properties(), part.shared_solid(COARSE_RESOLUTION)
+    assert found.mass == pytest.approx(direct.mass, rel=1e-12)
+    assert np.allclose(found.com, direct.com, rtol=0.0, atol=1e-13)
+    assert np.allclose(found.inertia, direct.inertia, rtol=0.0, atol=1e-12 * np.trace(direct.inertia))
+    assert solid.names == own.names and len(solid.points) == len(own.points)
+    assert np.allclose(np.sort(solid.points, axis=0), np.sort(own.points, axis=0), rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize("part", [JetpackBracket(37.0, 56.0), *LONG_AND_SHORT], ids=lambda part: part.title)
+def test_surface_of_a_stretched_part_is_its_own(part: Part) -> None:
+    assert part.stretched_from() is not None
+    surface, own = part.shared_solid(), part.solid()
+    assert set(surface.names) == set(own.names) == set(part.faces)
+    edges = surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    assert {tuple(edge) for edge in edges} == {tuple(edge) for edge in edges[:, ::-1]}  # closed
+    for name in part.faces:
+        found, expected = _area(surface, name), _area(own, name)
+        assert found == pytest.approx(expected, rel=1e-9)
+    moments, expected = (volume_moments(mesh.points, mesh.triangles) for mesh in (surface, own))
+    assert np.allclose(moments, expected, rtol=0.0, atol=1e-9 * np.abs(expected[[0, 1, 1, 1, 4, 4, 4, 4, 4, 4]]))
+
+
+def _area(solid: Solid, name: str) -> float:
+    faces = [k for k, other in enumerate(solid.face_names) if other == name]
+    a, b, c = solid.points[solid.triangles[np.isin(solid.face, faces)]].swapaxes(0, 1)
+    return 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+
+
+def test_a_mesh_serves_all_lengths_and_what_was_made_before_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    def results(distance: float) -> list[bytes]:
+        bracket = JetpackBracket(23.5, distance)
+        mass, mirrored = bracket.mass_properties(), bracket.mirrored("y", "left").shared_solid(COARSE_RESOLUTION)
+        arrays = [np.array(mass.mass), mass.com, mass.inertia, mirrored.points, bracket.surface().points]
+        return [array.tobytes() for array in arrays]
+
+    alone = []
+    for distance in (63.0, 118.0):
+        for made in (_made, _moments):
+            made.cache_clear()
+        alone.append(results(distance))
+    _moments.cache_clear()
+    monkeypatch.setattr(part_module, "build_solid", None)  # no other is made
+    assert [results(distance) for distance in (63.0, 118.0)] == alone
+
+
+def test_a_zone_whose_sections_differ_is_refused() -> None:
+    wedge = build_solid(
+        box((0.0, 0.0, 0.0), (30.0, 10.0, 10.0)) - box((0.0, 0.0, 8.0), (30.0, 10.0, 20.0)).rotated("y", 3.0),
+        Resolution(24),
+    )
+    zone = stretch_mm(np.zeros(3), np.array([1.0, 0.0, 0.0]), 10.0, 20.0, 5.0)
+    require_prism(build_solid(box((0.0, 0.0, 0.0), (30.0, 10.0, 10.0)), Resolution(24)), zone)
+    with pytest.raises(GeometryError, match="from 10 to 20 mm, has cross sections that differ"):
+        require_prism(wedge, zone)
