@@ -85,6 +85,13 @@ void bind_evaluate(py::module_& m) {
       .def_readwrite("masses", &fem::PartCase::masses, "RemoteMass")
       .def_readwrite("modes", &fem::PartCase::modes, "natural frequencies wanted")
       .def_readwrite("buckling", &fem::PartCase::buckling, "buckling factors wanted");
+  py::class_<fem::CaseConvergence>(m, "CaseConvergence",
+                                   "How far a case's peak is settled by meshes refined around it.")
+      .def_readonly("refined", &fem::CaseConvergence::refined, "around its peak, at least once")
+      .def_readonly("change", &fem::CaseConvergence::change,
+                    "of the peak by the last refinement there, relative; the largest since")
+      .def_readonly("settled", &fem::CaseConvergence::settled,
+                    "refined, estimated error and change within the tolerance; or no stress");
   py::class_<fem::PartAnalysis>(m, "PartAnalysis", "Mesh, static result and wall-clock times.")
       .def_readonly("mesh", &fem::PartAnalysis::mesh)
       .def_readonly("case_names", &fem::PartAnalysis::case_names)
@@ -101,10 +108,13 @@ void bind_evaluate(py::module_& m) {
                     "none")
       .def_readonly("size", &fem::PartAnalysis::size, "SizeField of the mesh")
       .def_readonly("converged", &fem::PartAnalysis::converged,
-                    "estimated error, and the change if there is one, within the tolerance")
+                    "every case is settled; of one pass: estimated error of the governing one "
+                    "within the tolerance")
       .def_readonly("refinements", &fem::PartAnalysis::refinements)
-      .def_readonly("change", &fem::PartAnalysis::change,
-                    "of the peak stress by the last refinement, relative")
+      .def_readonly("convergence", &fem::PartAnalysis::convergence,
+                    "CaseConvergence of every load case; none if no refinement is allowed")
+      .def_readonly("failure", &fem::PartAnalysis::failure,
+                    "of a finer mesh that could not be made or solved; empty if all could")
       .def_readonly("stopped", &fem::PartAnalysis::stopped,
                     "why refining ended without convergence; empty otherwise")
       .def_readonly("mesh_seconds", &fem::PartAnalysis::mesh_seconds)

@@ -220,11 +220,21 @@ void solve_stretched(const PartCase& part, const std::shared_ptr<const TetMesh>&
   solve(part, {}, analysis);
 }
 
-// One mesh and its solution; times are added to those of the passes before.
-void try_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) {
-  const Clock::time_point start = Clock::now();
-  const double before = thread_seconds();
+// Adds the processor time until it ends, whether the mesh is made or not.
+struct MesherTime {
+  double& seconds;
+  const double start = thread_seconds();
+  explicit MesherTime(double& total) : seconds(total) {}
+  MesherTime(const MesherTime&) = delete;
+  MesherTime& operator=(const MesherTime&) = delete;
+  ~MesherTime() { seconds += thread_seconds() - start; }
+};
+
+// The mesh of a pass; returned is what stretched parts share of it, if the part is one.
+std::shared_ptr<const TetMesh> make_mesh(const PartCase& part, double& mesher_seconds,
+                                         PartAnalysis& analysis) {
   const MeshOptions options = pass_options(part, mesher_seconds);
+  const MesherTime timed(mesher_seconds);
   std::shared_ptr<const TetMesh> kept;
   try {
     if (part.stretch) {
@@ -239,7 +249,13 @@ void try_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analys
                          " (max_vertices is what can be solved within " +
                          "the memory limit, fem.memory_limit_mib of a study)");
   }
-  mesher_seconds += thread_seconds() - before;
+  return kept;
+}
+
+// One mesh and its solution; times are added to those of the passes before.
+void try_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) {
+  const Clock::time_point start = Clock::now();
+  const std::shared_ptr<const TetMesh> kept = make_mesh(part, mesher_seconds, analysis);
   analysis.mesh_seconds += seconds_since(start);
   const Clock::time_point meshed = Clock::now();
   kept ? solve_stretched(part, kept, analysis) : solve(part, {}, analysis);
@@ -260,18 +276,6 @@ void run_pass(const PartCase& part, double& mesher_seconds, PartAnalysis& analys
   out_of_memory(analysis);
 }
 
-}  // namespace
-
-SizeField refine_around(const SizeField& size, const Eigen::Vector3d& point) {
-  constexpr double kGrowth = 0.4, kRadius = 4.0;  // radius in new edge lengths
-  const double edge = 0.5 * size_at(size, point);
-  SizeField refined = size;
-  refined.sources.push_back({Points(point.transpose()), edge, kGrowth, kRadius * edge});
-  return refined;
-}
-
-namespace {
-
 // What the half of a symmetric part can stand for.
 void check_half(const PartCase& part) {
   const bool half = !antisymmetric_supports(part).empty();
@@ -283,9 +287,7 @@ void check_half(const PartCase& part) {
     throw std::invalid_argument("buckling: of an antisymmetric load it is of the whole part");
 }
 
-}  // namespace
-
-PartAnalysis analyze_part(const PartCase& part) {
+void check_part(const PartCase& part) {
   if (!(part.tolerance > 0)) throw std::invalid_argument("tolerance must be > 0");
   if (part.cases.empty()) throw std::invalid_argument("cases: a part needs a load case");
   for (const LoadCase& load_case : part.cases) {
@@ -296,40 +298,77 @@ PartAnalysis analyze_part(const PartCase& part) {
   check_half(part);
   if (part.stretch && part.max_refinements > 0)
     throw std::invalid_argument("stretch: a refined mesh is made of the part's own surface");
+}
+
+// Which load cases are not settled, and why there are no more refinements.
+std::string unsettled(const PartAnalysis& analysis) {
+  std::string names;
+  for (std::size_t i = 0; i < analysis.convergence.size(); ++i) {
+    if (analysis.convergence[i].settled) continue;
+    names += (names.empty() ? "load case " : ", ") + analysis.case_names[i];
+  }
+  return names + (names.empty() ? "" : ": ") + "the estimated error" +
+         (names.empty() ? "" : " or the change") + " is above the tolerance after " +
+         std::to_string(analysis.refinements) + " refinements";
+}
+
+// One more pass, refined around the peaks of these load cases; what was there stands if it fails.
+bool refine_once(const PartCase& part, const std::vector<std::size_t>& cases,
+                 double& mesher_seconds, PartAnalysis& analysis) {
+  PartAnalysis finer;
+  finer.case_names = analysis.case_names;
+  finer.size = refine_around_peaks(analysis.size, analysis.results, cases);
+  finer.refinements = analysis.refinements + 1;
+  finer.mesh_seconds = analysis.mesh_seconds;
+  finer.solve_seconds = analysis.solve_seconds;
+  finer.failure = analysis.failure;
+  try {
+    run_pass(part, mesher_seconds, finer);
+  } catch (const std::runtime_error& error) {  // MeshError or SolverError: too many elements, say
+    analysis.failure = error.what();
+    return false;
+  }
+  finer.convergence = judge_cases(analysis.results, finer.results, std::move(analysis.convergence),
+                                  cases, part.tolerance);
+  analysis = std::move(finer);
+  return true;
+}
+
+// Until every load case is settled. Where a mesh for all of them is too much, for the governing
+// one.
+void refine(const PartCase& part, double& mesher_seconds, PartAnalysis& analysis) {
+  for (const StaticResult& result : analysis.results)
+    analysis.convergence.push_back({false, 0.0, result.peak_stress == 0.0});
+  bool together = true;
+  while (analysis.refinements < part.max_refinements) {
+    std::vector<std::size_t> open = open_cases(analysis.convergence);
+    if (!together) {
+      const bool governing = std::count(open.begin(), open.end(), analysis.governing) > 0;
+      open.assign(governing ? 1 : 0, analysis.governing);
+    }
+    if (open.empty()) break;
+    if (refine_once(part, open, mesher_seconds, analysis)) continue;
+    if (open.size() == 1) break;
+    together = false;
+  }
+  analysis.converged = std::all_of(analysis.convergence.begin(), analysis.convergence.end(),
+                                   [](const CaseConvergence& found) { return found.settled; });
+}
+
+}  // namespace
+
+PartAnalysis analyze_part(const PartCase& part) {
+  check_part(part);
   PartAnalysis analysis;
   for (const LoadCase& load_case : part.cases) analysis.case_names.push_back(load_case.name);
   analysis.size = part.size;
   double mesher_seconds = 0.0;  // of the processor, all passes
   run_pass(part, mesher_seconds, analysis);
-  const auto within = [&](const PartAnalysis& a) {
-    return std::max(a.result().stress_error, a.change * a.result().peak_stress) <=
-           part.tolerance * a.result().peak_stress;
-  };
-  analysis.converged = within(analysis);
-  while (analysis.refinements < part.max_refinements &&
-         !(analysis.converged && analysis.refinements > 0)) {
-    PartAnalysis finer;
-    finer.case_names = analysis.case_names;
-    finer.size = refine_around(analysis.size, analysis.result().peak_position);
-    finer.refinements = analysis.refinements + 1;
-    finer.mesh_seconds = analysis.mesh_seconds;
-    finer.solve_seconds = analysis.solve_seconds;
-    try {
-      run_pass(part, mesher_seconds, finer);
-    } catch (const std::runtime_error& error) {  // MeshError or SolverError: too many elements, say
-      analysis.converged = false;
-      analysis.stopped = error.what();
-      return analysis;
-    }
-    const double peak = finer.result().peak_stress;
-    finer.change = peak > 0 ? std::abs(peak - analysis.result().peak_stress) / peak : 0.0;
-    finer.converged = within(finer);
-    analysis = std::move(finer);
-  }
-  if (!analysis.converged) {
-    analysis.stopped = "the estimated error is above the tolerance after " +
-                       std::to_string(analysis.refinements) + " refinements";
-  }
+  const StaticResult& result = analysis.result();
+  analysis.converged = result.stress_error <= part.tolerance * result.peak_stress;
+  if (part.max_refinements > 0) refine(part, mesher_seconds, analysis);
+  if (!analysis.converged)
+    analysis.stopped = analysis.failure.empty() ? unsettled(analysis) : analysis.failure;
   return analysis;
 }
 

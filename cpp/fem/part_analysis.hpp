@@ -11,6 +11,7 @@
 #include "fem/meshing/size_field.hpp"
 #include "fem/meshing/stretch.hpp"
 #include "fem/meshing/tet_mesher.hpp"
+#include "fem/peak_refinement.hpp"
 #include "fem/surface/surface_mesh.hpp"
 
 namespace codesign::fem {
@@ -45,7 +46,7 @@ struct PartCase {
   std::vector<RemoteMass> masses;
   StaticSettings settings;
   double tolerance = 0.05;  // wanted relative error of the peak stress, and so of the safety factor
-  int max_refinements = 0;  // local refinements around the peak allowed to reach it; 0: one pass
+  int max_refinements = 0;  // local refinements around peaks allowed to reach it; 0: one pass
   int modes = 0;            // natural frequencies wanted
   int buckling = 0;         // buckling factors wanted
 };
@@ -64,21 +65,21 @@ struct PartAnalysis {
   // where there is none
   Eigen::VectorXd buckling_factors;
   SizeField size;          // that the mesh was made with
-  bool converged = false;  // estimated error, and the change if there is one, within the tolerance
+  bool converged = false;  // every case is settled; of one pass: estimated error of the governing
+                           // one within the tolerance
   int refinements = 0;     // done
-  double change = 0.0;     // of the peak stress by the last refinement, relative
-  std::string stopped;     // why refining ended without convergence; empty otherwise
+  std::vector<CaseConvergence> convergence;  // of each case; none if no refinement is allowed
+  std::string failure;  // of a finer mesh that could not be made or solved; empty if all could
+  std::string stopped;  // why refining ended without convergence, that maybe; empty otherwise
   double mesh_seconds = 0.0;   // wall clock, all passes
   double solve_seconds = 0.0;  // order, assemble, factorize, solve, recover; all passes
 };
 
-// Surface to safety factor. With refinements allowed, elements around the peak are halved at least
-// once, until estimated error and change are within the tolerance; the mesher's time limit covers
-// all passes. Throws MeshError, SolverError (MemoryLimitError, for want of memory too),
+// Surface to safety factor. With refinements allowed, elements around the peak of every load case
+// are halved at least once, in one mesh, until each case is settled; where that mesh cannot be made
+// or solved, around the peak of the governing case alone. The mesher's time limit covers all
+// passes. Throws MeshError, SolverError (MemoryLimitError, for want of memory too),
 // std::invalid_argument (unknown face); if only a refined pass fails, the last result stands.
 PartAnalysis analyze_part(const PartCase& part);
-
-// The size field with half the edge length around a point.
-SizeField refine_around(const SizeField& size, const Eigen::Vector3d& point);
 
 }  // namespace codesign::fem

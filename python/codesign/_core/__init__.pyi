@@ -12,6 +12,7 @@ from . import fem
 from . import interrupt
 
 __all__: list[str] = [
+    "CaseConvergence",
     "DesignResult",
     "LoadCase",
     "PartAnalysis",
@@ -220,6 +221,26 @@ class PartCase:
     @varying.setter
     def varying(self, arg0: collections.abc.Sequence[VaryingCase]) -> None: ...
 
+class CaseConvergence:
+    """
+    How far a case's peak is settled by meshes refined around it.
+    """
+    @property
+    def change(self) -> float:
+        """
+        of the peak by the last refinement there, relative; the largest since
+        """
+    @property
+    def refined(self) -> bool:
+        """
+        around its peak, at least once
+        """
+    @property
+    def settled(self) -> bool:
+        """
+        refined, estimated error and change within the tolerance; or no stress
+        """
+
 class PartAnalysis:
     """
     Mesh, static result and wall-clock times.
@@ -232,14 +253,19 @@ class PartAnalysis:
     @property
     def case_names(self) -> list[str]: ...
     @property
-    def change(self) -> float:
-        """
-        of the peak stress by the last refinement, relative
-        """
-    @property
     def converged(self) -> bool:
         """
-        estimated error, and the change if there is one, within the tolerance
+        every case is settled; of one pass: estimated error of the governing one within the tolerance
+        """
+    @property
+    def convergence(self) -> list[CaseConvergence]:
+        """
+        CaseConvergence of every load case; none if no refinement is allowed
+        """
+    @property
+    def failure(self) -> str:
+        """
+        of a finer mesh that could not be made or solved; empty if all could
         """
     @property
     def frequencies(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:

@@ -1,4 +1,4 @@
-"""Parts of a design confirmed: in full, on meshes refined at the peak until its error is within the tolerance.
+"""Parts of a design confirmed: in full, on meshes refined at the peaks until every load case is settled.
 
 A run keeps and resumes confirmations as it does flights on other trajectories: under a name in their place.
 """
@@ -38,7 +38,7 @@ def evaluate_confirmed(study: StudyData, design: Design, cache: PartCache | None
         config = study.configured(design)
         parts: dict[str, dict[str, Any]] = {}
         for name, part in build_parts(study, design, config).items():
-            settings = replace(confirming(stress_settings(config, name)), flown=(), modes=0, buckling=0)
+            settings = replace(confirming(stress_settings(config, name)), modes=0, buckling=0)
             key = part_key(study, part, settings)
             document = cache.get(key) if cache is not None else None
             if document is None:

@@ -14,13 +14,10 @@ from rich.text import Text
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from codesign.followup.confirmation import Confirmed
     from codesign.followup.tables import Table as PartTable
-    from codesign.parts.strength import Confirmation
     from codesign.problem.design_space import DesignValue
     from codesign.problem.evaluation import Evaluation
     from codesign.problem.quantities import Quantity
-    from codesign.report.data import ReportData
     from codesign.report.tolerances import Tolerances
     from codesign.storage.records import Record
     from codesign.storage.runs import Run
@@ -59,14 +56,14 @@ def print_evaluation(evaluation: Evaluation) -> None:
     for name, part in evaluation.parts.items():
         table.add_row(
             name,
-            f"{part['mass']:.4f} kg, SF {_factor(part, 1)}, peak {part['peak_stress'] / 1e6:.2f} MPa"
-            f" (± {part['stress_error'] / 1e6:.2f}), left out {_left_out(part)}",
+            f"{part['mass']:.4f} kg, SF {factor_text(part, 1)}, peak {part['peak_stress'] / 1e6:.2f} MPa"
+            f" (± {part['stress_error'] / 1e6:.2f}), left out {left_out_text(part)}",
         )
         cases = part.get("cases", {})
         for case, found in cases.items():
             when = f" at {found['time']:.3f} s, {found['link']}{_life(found)}" if "time" in found else ""
             if when or len(cases) > 1:
-                table.add_row("", f"{case}: SF {_factor(found, 1)}{when}")
+                table.add_row("", f"{case}: SF {factor_text(found, 1)}{when}")
         if part.get("peak_at_exclusion"):
             table.add_row(
                 "", f"peak {part['border_distance'] * 1e3:.2g} mm from the rim of a clamp or load: see docs/fem.md"
@@ -110,47 +107,6 @@ def print_verdict(verdict: Mapping[str, Any], only_reasons: bool = False) -> Non
         out.print(text, soft_wrap=True)
 
 
-def print_confirmed(run: ReportData, found: Sequence[Confirmed]) -> None:
-    """Designs of a run before and after their confirmation, and which one is recommended now."""
-    from codesign.report.objections import error_share
-    from codesign.report.verdict import run_verdict
-
-    def error(numbers: Mapping[str, Any]) -> str:
-        share = error_share(numbers)
-        return "-" if share is None else f"{100 * share:.1f} %"
-
-    table = Table("design", "part", "load case", "safety factor", "error", "finer mesh", "error")
-    for each in found:
-        if not each.found.parts:
-            out.print(f"design {each.number} could not be confirmed: {each.found.reason}", soft_wrap=True)
-        for name, part in each.found.parts.items():
-            for case, numbers in part["cases"].items():
-                before = each.evaluation.parts[name].get("cases", {}).get(case, each.evaluation.parts[name])
-                cells = (text for one in (before, numbers) for text in (_factor(one, 2), error(one)))
-                table.add_row(str(each.number), name, case, *cells)
-    out.print(table)
-    if run.recommended is None:
-        out.print("the report recommends no design", soft_wrap=True)
-        return
-    print_verdict(run_verdict(run, run.recommended).document())
-
-
-def print_confirmations(confirmations: Mapping[str, Confirmation]) -> None:
-    """Analyzed and confirmed numbers of each part side by side."""
-    for name, confirmation in confirmations.items():
-        table = Table("", "as analyzed", "full, fine mesh", title=name, title_justify="left", box=None, pad_edge=False)
-        both = (confirmation.analyzed, confirmation.confirmed)
-        table.add_row("safety factor", *(_factor(part, 2) for part in both))
-        stresses = (f"{part['peak_stress'] / 1e6:.2f} ± {part['stress_error'] / 1e6:.2f}" for part in both)
-        table.add_row("peak stress [MPa]", *stresses)
-        table.add_row("largest stress left out", *(_left_out(part) for part in both))
-        table.add_row("stress in 50 mm³ [MPa]", *(f"{part['stress_50'] / 1e6:.2f}" for part in both))
-        table.add_row("largest displacement [mm]", *(f"{part['max_displacement'] * 1e3:.4f}" for part in both))
-        table.add_row("tolerance reached", *("yes" if part["tolerance_reached"] else "no" for part in both))
-        table.add_row("seconds", *(f"{sum(part['seconds'].values()):.1f}" for part in both))
-        out.print(table)
-
-
 def print_tolerances(found: Tolerances) -> None:
     """Of every sampled design the share that is feasible, and how its numbers scatter."""
     from codesign.problem.quantities import quantity
@@ -169,7 +125,7 @@ def print_tolerances(found: Tolerances) -> None:
             out.print(f"  {reason}")
 
 
-def _factor(part: Mapping[str, Any], digits: int) -> str:
+def factor_text(part: Mapping[str, Any], digits: int) -> str:
     """Safety factor of a part; one that is not stressed has none."""
     factor = part["safety_factor"]
     return "none (not stressed)" if factor is None else f"{factor:.{digits}f}"
@@ -181,7 +137,7 @@ def _life(case: Mapping[str, Any]) -> str:
     return "" if flights is None else f", fatigue after {flights:.2g} flights"
 
 
-def _left_out(part: Mapping[str, Any]) -> str:
+def left_out_text(part: Mapping[str, Any]) -> str:
     """The largest stress that the exclusion leaves out, and its distance to the next clamp or border of a load."""
     left_out = part.get("left_out")
     if left_out is None:

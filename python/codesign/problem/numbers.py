@@ -84,6 +84,7 @@ _PART = (
 )
 _CASE = (
     *_STRENGTH,
+    ("change", "", 'relative change of its peak in the last refinement there, with `accuracy = "converged"`'),
     ("fatigue.damage", "", "Miner's sum of one flight", FLOWN_CASE),
     ("fatigue.flights", "", "until the part fails by fatigue", FLOWN_CASE),
     ("fatigue.position.N", "m", "where it would, part axes", FLOWN_CASE),

@@ -117,7 +117,7 @@ def _strength(
     if numbers.get("peak_resolved") is False:
         return Objection(UNSETTLED[0], f"{told}, too much to tell anything", False)
     governs = case == part.get("load_case", case)
-    loose = governs and part.get("tolerance_reached") is False
+    loose = not numbers.get("settled", not governs or part.get("tolerance_reached") is not False)
     if not loose and (tolerance is None or share is None or share <= tolerance):
         return None
     if factor is None or least is None:

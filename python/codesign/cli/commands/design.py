@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from codesign.cli.console import err, out, print_confirmations, print_evaluation, print_json, print_verdict, shown
+from codesign.cli.console import err, out, print_evaluation, print_json, print_verdict, shown
 from codesign.cli.export.formats import DEFAULT, FORMATS, parse_formats, parse_frames
 from codesign.cli.options import (
     DEFAULT_STUDY,
@@ -31,7 +31,7 @@ def evaluate(
     set_: SetOption = None,
     study: StudyOption = DEFAULT_STUDY,
     trajectory: TrajectoryOption = None,
-    confirm: Annotated[bool, typer.Option("--confirm", help="Full parts on fine meshes too (some seconds).")] = False,
+    confirm: Annotated[bool, typer.Option("--confirm", help="Full parts on fine meshes too, case by case.")] = False,
     no_cache: NoCacheOption = False,
     as_json: JsonOption = False,
 ) -> int:
@@ -40,6 +40,7 @@ def evaluate(
     Without --set the study's baseline, or the middle of its grid.
     """
     from codesign.chain.study import load_study
+    from codesign.cli.confirmations import print_confirmations
     from codesign.cli.study_summary import typical
     from codesign.report.verdict import study_verdict
     from codesign.storage.cache import default_cache_path, open_cache
@@ -53,13 +54,14 @@ def evaluate(
         err.print("known from the cache; --no-cache computes it again")
     confirmations = loaded.confirm(evaluation.design) if confirm and evaluation.status != "failed" else {}
     if as_json:
-        confirmed = {"confirmed": {name: c.confirmed for name, c in confirmations.items()}} if confirm else {}
-        print_json(evaluation.to_dict() | confirmed)
+        told = {"confirmed": {name: c.confirmed for name, c in confirmations.items()}} if confirm else {}
+        told |= {"confirmation": {name: c.cases for name, c in confirmations.items()}} if confirm else {}
+        print_json(evaluation.to_dict() | told)
     else:
         print_evaluation(evaluation)
         if evaluation.status == "feasible":
             print_verdict(study_verdict(loaded, evaluation).document(), only_reasons=True)
-        print_confirmations(confirmations)
+        print_confirmations(evaluation, confirmations)
     return 0 if evaluation.status == "feasible" else 1
 
 

@@ -233,7 +233,7 @@ def confirm(
 
     By default the recommended design, and the best compromises that only the error of their stress speaks against.
     """
-    from codesign.cli.console import print_confirmed
+    from codesign.cli.confirmations import print_confirmed
     from codesign.followup.confirmation import confirm_designs
     from codesign.report.reading import read_report_data, study_of
     from codesign.search.progress import ProgressBar
