@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -29,12 +29,13 @@ class Prospects:
     """Models of the designs and the front that is to be beaten.
 
     front: (n, varying objectives) scaled objectives of the feasible designs that no other dominates. varying: numbers
-    of the objectives that are not the same for all designs.
+    of the objectives that are not the same for all designs. worst: (varying,) worst values of the feasible designs.
     """
 
     models: DesignModels
     front: Array
     varying: tuple[int, ...]
+    worst: Array
 
     @classmethod
     def of(cls, models: DesignModels, feasible: Array) -> Prospects:
@@ -42,7 +43,8 @@ class Prospects:
         varying = tuple(j for j, output in enumerate(models.objectives) if output.process is not None)
         columns = [models.scalings[j].forward(feasible[:, j]) for j in varying]
         scaled = np.stack(columns, axis=1) if varying else np.empty((len(feasible), 0))
-        return cls(models, scaled[non_dominated(scaled)], varying)
+        worst = scaled.max(axis=0, initial=-np.inf)
+        return cls(models, scaled[non_dominated(scaled)], varying, worst)
 
     def with_design(self, grid: Grid) -> Prospects:
         """As if a design had given just what is predicted."""
@@ -51,18 +53,18 @@ class Prospects:
             mean, _ = self.models.predict(self.models.coordinates.of([grid]))
             both = np.vstack([front, mean[:, self.varying]])
             front = both[non_dominated(both)]
-        return Prospects(self.models.conditioned(grid), front, self.varying)
+        return replace(self, models=self.models.conditioned(grid), front=front)
 
     def improvement(self, wide: bool, rng: np.random.Generator) -> Improvement | None:
         """The expected gain that designs are ranked by; None: by the chance of being feasible alone.
 
-        wide: beyond the front's ends, too.
+        wide: beyond the front's ends, too, as far as feasible designs are known.
         """
         if not self.varying or not len(self.front):
             return None
         if len(self.varying) > MOST_OBJECTIVES:
             return ChebyshevImprovement(self.front, rng.dirichlet(np.ones(len(self.varying))), rng)
-        return HypervolumeImprovement(self.front, reference_point(self.front, wide))
+        return HypervolumeImprovement(self.front, reference_point(self.front, self.worst if wide else None))
 
     def worth(self, grids: Sequence[Grid], improvement: Improvement | None) -> Array:
         """(n,) worth of grid points."""
@@ -80,10 +82,15 @@ class Prospects:
         return worth
 
 
-def reference_point(front: Array, wide: bool) -> Array:
-    """(objectives,) where gains end: a little beyond the front's worst, not better than the median design if `wide`."""
-    worst = front.max(axis=0)
-    reference: Array = worst + MARGIN * np.maximum(worst - front.min(axis=0), LEAST_RANGE)
-    if wide or len(front) < FEW:
+def reference_point(front: Array, worst: Array | None = None) -> Array:
+    """(objectives,) where gains end: a little beyond the front's worst values.
+
+    Not better than `worst` (objectives,) if given, and than the median design while the front has few designs.
+    """
+    nadir = front.max(axis=0)
+    reference: Array = nadir + MARGIN * np.maximum(nadir - front.min(axis=0), LEAST_RANGE)
+    if worst is not None:
+        reference = np.maximum(reference, worst)
+    if len(front) < FEW:
         reference = np.maximum(reference, MEDIAN)
     return reference

@@ -125,6 +125,18 @@ def test_five_objectives():
     assert box.of(found["surrogate"]) > 1.02 * box.of(found["random"])
 
 
+def test_the_ends_of_the_front_are_found_where_they_are_dear():
+    """The best of `far` has a value of `near` that is worse than the median design's."""
+
+    def problem(x):
+        return evaluated({"near": float(np.exp(6 * x[0]) + x[1] + x[2]), "far": float(1 - x[0] + x[1] + x[2])})
+
+    for seed in (1, 2, 3):
+        _, found = searched(problem, evaluations=40, seed=seed)
+        near, far = (min(result.objectives[name] for result in found) for name in ("near", "far"))
+        assert (near, far) == pytest.approx((1.0, 0.0), abs=1e-12)
+
+
 def test_constant_objectives_and_constraints_change_nothing():
     _, plain = searched(lambda x: evaluated(bowls(x)), evaluations=32)
     _, more = searched(
