@@ -161,7 +161,9 @@ def page(report: Path) -> None:
         until("first content", f"{paint}.length", lambda: float(shown.evaluate(f"{paint}[0].startTime")))
         until("trade-offs drawn", "drawn.front", lambda: float(shown.evaluate("drawn.front")))
         for chart in ("what-if-chart", "progress"):
-            begun = float(shown.evaluate(f"element('{chart}')?.scrollIntoView(), performance.now()"))
+            begun = float(
+                shown.evaluate(f"element('{chart}')?.scrollIntoView({{behavior: 'instant'}}), performance.now()")
+            )
             drawn = f"drawn['{chart}']"
             wait = partial(lambda drawn, begun: max(0.0, float(shown.evaluate(drawn)) - begun), drawn, begun)
             until(f"{chart} drawn after scrolling to it", drawn, wait)

@@ -74,7 +74,7 @@ function frontTraces() {
   traces.push(markers(at, {symbol: 'diamond', size: 13, color: color('original'), line: {width: 1.5, color: color('bg')}}, 'original'));
   const build = points(d => designs[report.recommended] === d);
   traces.push(markers(build, {symbol: 'star', size: 17, color: color('ink'), line: {width: 1.5, color: color('bg')}}, 'recommended'));
-  traces.push({...markers([], {symbol: 'circle-open', size: 22, color: color('accent'), line: {width: 2.5}}, 'selected'), hoverinfo: 'skip', hovertemplate: null});
+  traces.push({...markers(points(d => designs[state.selected] === d), {symbol: 'circle-open', size: 22, color: color('accent'), line: {width: 2.5}}, 'selected'), hoverinfo: 'skip', hovertemplate: null});
   traces.push({...markers([], {symbol: 'circle-open', size: 18, color: color('ink'), line: {width: 1.5}}, 'hover'), hoverinfo: 'skip', hovertemplate: null});
   return traces.concat(report.compared.map(comparedTrace));
 }
@@ -108,7 +108,6 @@ function drawFront() {
     plot.on('plotly_hover', event => { const i = event.points[0].customdata; if (known(i)) hover(i, 'front'); });
     plot.on('plotly_unhover', () => hover(null, 'front'));
   }
-  ring(5, state.selected);
 }
 
 /** Moves a ring (trace 5: selected, 6: hovered) to a design. */
