@@ -81,6 +81,13 @@ bool any_antisymmetric(const PartCase& part) {
                      [](const LoadCase& load_case) { return load_case.antisymmetric; });
 }
 
+// Whether anything asks for the symmetric motions, which are all there are of a whole part.
+bool any_symmetric(const PartCase& part) {
+  return !part.varying.empty() || part.modes > 0 || part.buckling > 0 ||
+         std::any_of(part.cases.begin(), part.cases.end(),
+                     [](const LoadCase& load_case) { return !load_case.antisymmetric; });
+}
+
 // The load cases of one kind, by the factor of a system that moves as they do.
 void solve_cases(const PartCase& part, const StaticSystem& system, bool antisymmetric,
                  PartAnalysis& analysis) {
@@ -172,7 +179,8 @@ KeptParts elements_of(const PartCase& part, const std::shared_ptr<const TetMesh>
   const auto keep = [&](const std::vector<Support>& supports) {
     return kept_elements(mesh, *part.stretch, part.material, constrain(*mesh, supports), limits);
   };
-  KeptParts kept{keep(part.supports), nullptr};
+  KeptParts kept;
+  if (any_symmetric(part)) kept.symmetric = keep(part.supports);
   if (any_antisymmetric(part)) kept.antisymmetric = keep(antisymmetric_supports(part));
   return kept;
 }
@@ -181,7 +189,7 @@ KeptParts elements_of(const PartCase& part, const std::shared_ptr<const TetMesh>
 void solve(const PartCase& part, const KeptParts& kept, PartAnalysis& analysis) {
   CaseFactors factors;
   analysis.results.resize(part.cases.size());
-  {
+  if (any_symmetric(part)) {
     const StaticSystem system(analysis.mesh, part.material, part.supports, settings_of(part),
                               part.masses, kept.symmetric);
     solve_cases(part, system, false, analysis);

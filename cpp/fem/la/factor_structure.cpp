@@ -1,5 +1,6 @@
 #include "fem/la/factor_structure.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace codesign::fem {
@@ -8,6 +9,13 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
+
+std::vector<int> FactorStructure::supernode_of() const {
+  std::vector<int> found(at(first.back()));
+  for (int s = 0; s < count(); ++s)
+    std::fill(found.begin() + first[at(s)], found.begin() + first[at(s + 1)], s);
+  return found;
+}
 
 FactorStructure factor_structure(const NodePattern& pattern) {
   const Supernodes& nodes = pattern.supernodes;

@@ -18,6 +18,8 @@ struct FactorStructure {
   int width(int s) const { return first[at(s + 1)] - first[at(s)]; }
   int height(int s) const { return row_start[at(s + 1)] - row_start[at(s)]; }
   const int* rows(int s) const { return row.data() + row_start[at(s)]; }
+  // (equations) the supernode whose column each is.
+  std::vector<int> supernode_of() const;
   int tallest() const {
     int most = 0;
     for (int s = 0; s < count(); ++s) most = std::max(most, height(s));

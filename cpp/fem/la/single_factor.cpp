@@ -49,12 +49,9 @@ class SingleFactor::Elimination {
         structure_(factor.structure_),
         matrix_(matrix),
         kept_from_(pattern.equations() - factor.left_),
-        supernode_of_(at(pattern.equations())),
+        supernode_of_(structure_.supernode_of()),
         place_(at(pattern.equations())),
         taken_(at(structure_.count())) {
-    for (int s = 0; s < structure_.count(); ++s)
-      std::fill(supernode_of_.begin() + structure_.first[at(s)],
-                supernode_of_.begin() + structure_.first[at(s + 1)], s);
     for (const DenseBlock& block : blocks) hand_on(front_of(block));
     for (int s = 0; s < structure_.count() && factor_.eliminated(s) > 0; ++s) eliminate(s);
     for (int column = kept_from_; column < pattern.equations(); ++column) add_kept(column);

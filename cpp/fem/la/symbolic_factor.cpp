@@ -26,10 +26,7 @@ struct Extent {
 
 Extent extent_of(const FactorStructure& structure) {
   Extent out;
-  std::vector<int> supernode_of(at(structure.first.back()));
-  for (int s = 0; s < structure.count(); ++s)
-    std::fill(supernode_of.begin() + structure.first[at(s)],
-              supernode_of.begin() + structure.first[at(s + 1)], s);
+  const std::vector<int> supernode_of = structure.supernode_of();
   out.px.push_back(0);
   for (int s = 0; s < structure.count(); ++s) {
     const int *row = structure.rows(s) + structure.width(s),

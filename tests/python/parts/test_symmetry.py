@@ -10,7 +10,12 @@ import pytest
 import codesign
 from codesign import _core, fem
 from codesign.chain.chain import stress_settings
-from codesign.parts.load_case import PartLoad, PressedFace, PushedFace, part_case
+from codesign.errors import SolverError
+from codesign.geometry.profile import Path, Resolution
+from codesign.geometry.shape import Extrusion
+from codesign.geometry.solid import build_solid
+from codesign.parts.load_case import PartLoad, PressedFace, PushedFace, StressSettings, native_case, part_case
+from codesign.parts.surface import surface_mesh
 from codesign.parts.symmetry import Parity, is_symmetric, parity
 from codesign.studies.ironcub.bracket import JetpackBracket
 
@@ -84,3 +89,23 @@ def test_an_antisymmetric_case_needs_a_half() -> None:
     )
     with pytest.raises(ValueError, match="no half model"):
         _core.analyze_part(whole)
+
+
+def test_antisymmetric_cases_alone_need_no_symmetric_supports() -> None:
+    """A bar of 200 x 12 x 20 mm bent along y: nothing holds its half along z, and no case asks for that."""
+    outline = (
+        Path(0.0, 0.0).line(200.0, 0.0, face="cut").line(200.0, 6.0, face="tip").line(0.0, 6.0)
+        .line(0.0, 0.0, face="root").close()
+    )  # fmt: skip
+    surface = surface_mesh(build_solid(Extrusion(outline, -10.0, 10.0), Resolution(48)))
+    supports = [fem.Support("root", axes="xy"), fem.Support("cut", axes="y", symmetry=True)]
+    steel = fem.Material("steel", 210e9, 0.3, 7850.0, 250e6)
+
+    def bent(antisymmetric: bool) -> _core.PartCase:
+        cases = [fem.LoadCase("bent", [fem.Force("tip", [0.0, 50.0, 0.0])], antisymmetric=antisymmetric)]
+        return native_case(StressSettings(steel, [], []), surface, fem.SizeField(6e-3), supports, cases, copies=2)
+
+    found = _core.analyze_part(bent(True)).result.max_displacement
+    assert found == pytest.approx(100.0 * 0.2**3 / (3 * 210e9 * 0.02 * 0.012**3 / 12), rel=0.01)
+    with pytest.raises(SolverError, match="translation along z"):
+        _core.analyze_part(bent(False))
