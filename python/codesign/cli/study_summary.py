@@ -14,9 +14,11 @@ from codesign.chain.judge import FLIGHT_MISSED, LIMITS, Limit, limits
 from codesign.cli.console import out, shown
 from codesign.problem.numbers import known_number
 from codesign.problem.quantities import MINUS
+from codesign.study.checking.cancelling import cancelled_loads
 from codesign.study.checking.cases import idle_cases
 from codesign.study.checking.numbers import constant_numbers
 from codesign.study.checking.problems import Problem
+from codesign.study.checking.ranges import refused_values
 from codesign.study.parts import bodies_given_twice
 
 if TYPE_CHECKING:
@@ -52,7 +54,16 @@ def notes(study: Study) -> Iterator[Problem]:
     """What is no mistake, but may not be what was meant."""
     yield from constant_numbers(study.config)
     yield from idle_cases(study.config)
+    yield from cancelled_loads(study.config)
     yield from bodies_given_twice(study.config, study.base_robot)
+    yield from ((key, reason) for key, reason, _ in refused_values(study, typical(study)))
+
+
+def hopeless(study: Study) -> Iterator[Problem]:
+    """Why no design can come of a study that can be loaded: its robot cannot fly, or no values give a part."""
+    if why := study.grounded:
+        yield "flight", why
+    yield from ((key, reason) for key, reason, every in refused_values(study, typical(study)) if every)
 
 
 def _unit(limit: Limit) -> str:

@@ -15,6 +15,7 @@ from codesign.problem.design_space import Design, DesignValue
 from codesign.robot.assembly import PartBody, assemble, place_carried
 from codesign.robot.description import RobotDescription
 from codesign.robot.inertial import Inertial
+from codesign.study.checking.cancelling import cancelled_case
 from codesign.study.checking.problems import Problem, unknown
 from codesign.study.choices import numbers_of
 from codesign.study.config import LoadCaseConfig, PartConfig, StudyConfig
@@ -127,6 +128,8 @@ def _face_problems(part: PartConfig, config: StudyConfig, built: Part) -> Iterat
             yield from unknown(f"parts.{part.name}.masses", "interface", mass.interface, list(built.interfaces()))
     for case in part.load_cases:
         yield from _seat_problems(part, case, built, named)
+        if why := cancelled_case(case, surface):
+            yield _loads_key(part, case), why
         for load in (load for load in case.loads if load.face):
             key = _loads_key(part, case)
             if load.interface:

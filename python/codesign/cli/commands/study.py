@@ -71,18 +71,18 @@ def check(
 ) -> int:
     """Everything that is wrong with a study, at once; else what varies, what is minimized and what must hold.
 
-    A robot that cannot hover or hold its attitude at its start posture is wrong, too.
+    A robot that cannot hover or hold its attitude at its start posture is wrong, too, and a part that no values give.
 
     Exit code 2 if anything is wrong.
     """
     from codesign.chain.study import load_study
-    from codesign.cli.study_summary import measured, print_study, study_summary
+    from codesign.cli.study_summary import hopeless, measured, print_study, study_summary
     from codesign.study.checking.everything import find_problems
 
     problems = find_problems(study)
     loaded = None if problems else load_study(study)
-    if loaded is not None and (why := loaded.grounded):
-        problems = [f"{loaded.path}: flight: {why}"]
+    if loaded is not None:
+        problems = [f"{loaded.path}: {key}: {reason}" for key, reason in hopeless(loaded)]
     if problems or loaded is None:
         if as_json:
             print_json({"problems": problems})
