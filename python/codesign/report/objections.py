@@ -99,7 +99,8 @@ def _strength(
     """What the error of a load case's stress says against a part.
 
     The safety factor is judged as an interval: where it keeps its limit even less COMFORT times its estimated error,
-    the error does not matter, however large; where no limit is set, it must be within the tolerance.
+    the error does not matter, however large; where no limit is set, it must be within the tolerance. A confirmed case
+    is settled if its change by the last refinement is, too; the larger of both counts.
     """
     numbers = part.get("cases", {}).get(case, part)
     factor, share, least = numbers.get("safety_factor"), error_share(numbers), least_factor(name, case, limits)
@@ -111,7 +112,9 @@ def _strength(
         if least > factor / (1.0 + share):
             text = f"the safety factor {factor:.3g} of the {of} keeps its limit {least:g} by less than its error"
             return Objection(UNSETTLED[1], f"{text}, {_percent(share)}", False)
-    asked = f" (tolerance {_percent(tolerance)})" if tolerance is not None else ""
+    change = numbers.get("change") or 0.0
+    moved = f", and the last refinement moved it by {_percent(change)}" if change > (tolerance or 0.0) else ""
+    asked = (f" (tolerance {_percent(tolerance)})" if tolerance is not None else "") + moved
     on = " on meshes refined at the peak" if part.get("confirmed") else ""
     told = f"the stress of the {of} is not settled: its error{on} is estimated at {_percent(share or 0.0)}{asked}"
     if numbers.get("peak_resolved") is False:
@@ -122,10 +125,11 @@ def _strength(
         return None
     if factor is None or least is None:
         return Objection(UNSETTLED[0], told, False)
-    lowest = factor / (1.0 + COMFORT * (share or 0.0))
+    lowest = factor / (1.0 + COMFORT * max(share or 0.0, change))
     if lowest >= least:
         return None
-    text = f"{told}, and the safety factor {factor:.3g} less twice that, {lowest:.3g}, misses its limit {least:g}"
+    twice = "twice the larger of both" if moved else "twice that"
+    text = f"{told}, and the safety factor {factor:.3g} less {twice}, {lowest:.3g}, misses its limit {least:g}"
     return Objection(UNSETTLED[0], text, False)
 
 

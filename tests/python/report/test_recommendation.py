@@ -88,6 +88,20 @@ def test_an_error_that_no_limit_feels_is_no_objection():
     assert "too much to tell anything" in objections(unresolved, {"safety_factor": (">=", 1.5)}, tolerance=0.05)[0].text
 
 
+@pytest.mark.parametrize(
+    ("factor", "settled", "said"), [(13.0, False, True), (15.0, False, False), (13.0, True, False)]
+)
+def test_a_confirmed_case_whose_peak_still_moves_is_not_settled(factor, settled, said):
+    """The case does not govern; 20 % of change count as 20 % of error: 13 / 1.4 misses 10, 15 / 1.4 keeps it."""
+    thrust = {"safety_factor": factor, "peak_stress": 1e6, "stress_error": 3e4, "change": 0.2, "settled": settled}
+    landing = {"safety_factor": 11.0, "peak_stress": 2e6, "stress_error": 5e4, "change": 0.01, "settled": True}
+    cases, design = {"thrust": thrust, "landing": landing}, synthetic_run.evaluate(synthetic_run.BASELINE)
+    design = part(design, load_case="landing", cases=cases, confirmed=True, tolerance_reached=settled)
+    found = objections(design, LIMITS, tolerance=0.05)
+    assert bool(found) is said
+    assert all("in load case thrust" in one.text and "moved it by 20\u202f%" in one.text for one in found)
+
+
 def test_every_load_case_is_judged_by_its_own_limit():
     """The case that governs keeps its limit by far; another one is within its error of its own."""
     cases = {
