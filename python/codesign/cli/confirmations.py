@@ -15,14 +15,16 @@ if TYPE_CHECKING:
     from codesign.problem.evaluation import Evaluation
     from codesign.report.data import ReportData
 
-SETTLED = {True: "settled", False: "not resolved", None: "-"}
+SETTLED = {True: "settled", False: "not resolved"}
+YES = {True: "yes", False: "no", None: "-"}  # below a head that says of what
 
 
 def print_confirmed(run: ReportData, found: Sequence[Confirmed]) -> None:
     """Designs of a run before and after their confirmation, and which one is recommended now."""
     from codesign.report.verdict import run_verdict
 
-    table = Table("design", "part", "load case", "safety factor", "error", "finer mesh", "error", "change", "")
+    heads = ("design", "part", "load case", "safety factor", "error", "finer mesh", "error", "change", "settled")
+    table = Table(*heads, box=None, pad_edge=False)
     steps = []
     for each in found:
         if not each.found.parts:
@@ -31,7 +33,7 @@ def print_confirmed(run: ReportData, found: Sequence[Confirmed]) -> None:
             for case, numbers in part["cases"].items():
                 before = each.evaluation.parts[name].get("cases", {}).get(case, each.evaluation.parts[name])
                 cells = (text for one in (before, numbers) for text in (factor_text(one, 2), _error(one)))
-                table.add_row(str(each.number), name, case, *cells, *_convergence(numbers))
+                table.add_row(str(each.number), name, case, *cells, _change(numbers), YES[numbers.get("settled")])
                 if numbers.get("next_step"):
                     steps.append(f"design {each.number}, {name}, {case}: {numbers['next_step']}")
     out.print(table)
@@ -70,8 +72,7 @@ def _print_cases(confirmation: Confirmation, searched: Sequence[str]) -> None:
         factors = [found[each]["safety_factor"] for each in ("searched", "confirmed")]
         share = "-" if None in factors else f"{100 * (factors[1] / factors[0] - 1):+.1f} %"
         shown = (factor_text(found["searched"], 2), factor_text(found["confirmed"], 2), share)
-        change, verdict = _convergence(found)
-        table.add_row(case, *shown, change, _error(found["confirmed"]), verdict)
+        table.add_row(case, *shown, _change(found), _error(found["confirmed"]), SETTLED[found["settled"]])
     for case in searched:
         if case not in cases:
             table.add_row(case, "", "", "", "", "", "not confirmed: its loads are those of the flight")
@@ -81,10 +82,10 @@ def _print_cases(confirmation: Confirmation, searched: Sequence[str]) -> None:
             out.print(f"{case}: {found['next_step']}", soft_wrap=True, highlight=False)
 
 
-def _convergence(case: Mapping[str, Any]) -> tuple[str, str]:
-    """Change of the peak by the last refinement there, and whether it is settled; old rows of a run know neither."""
+def _change(case: Mapping[str, Any]) -> str:
+    """Change of the peak by the last refinement there; old rows of a run do not know it."""
     change = case.get("change")
-    return "-" if change is None else f"{100 * change:.1f} %", SETTLED[case.get("settled")]
+    return "-" if change is None else f"{100 * change:.1f} %"
 
 
 def _error(numbers: Mapping[str, Any]) -> str:
