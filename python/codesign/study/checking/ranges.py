@@ -106,7 +106,8 @@ def _refusals(part: PartConfig, trials: _Trials) -> Iterator[Refusal]:
     for which, variable in enumerate(trials.variables):
         for run in _runs(dead[which]):
             reason = next(text for grid, text in trials.refused.items() if grid[which] == run[0])
-            told = f"{_run_text(variable, run)} gives no {part.name}, whatever the other values are: {reason}"
+            verb = "gives" if len(run) == 1 else "give"
+            told = f"{_run_text(variable, run)} {verb} no {part.name}, whatever the other values are: {reason}"
             yield Refusal(f"variables.{variable.name}", told, False)
     open_ = [grid for grid in trials.tried if all(i not in gone for i, gone in zip(grid, dead, strict=True))]
     left = [grid for grid in open_ if grid in trials.refused]

@@ -47,7 +47,7 @@ def told(file: Path) -> list[ranges.Refusal]:
 def test_values_beyond_a_limit_are_named_with_their_reason(tmp_path: Path) -> None:
     low, high = told(study_with(tmp_path / "study", reach(60, 520)))
     assert (low.key, high.key) == ("variables.reach", "variables.reach")
-    assert low.reason.startswith("60 … 70 mm (2 of 47 values) gives no strut, whatever the other values are: ")
+    assert low.reason.startswith("60 … 70 mm (2 of 47 values) give no strut, whatever the other values are: ")
     assert "reach = 60 mm is below its limit 80 mm" in low.reason
     assert high.reason.startswith("510 … 520 mm (2 of 47 values)")
     assert "reach = 510 mm is above its limit 500 mm" in high.reason
