@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
+
 #include "errors.hpp"
 #include "fem/meshing/linear_tets.hpp"
+#include "fem/meshing/mended_tets.hpp"
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/mesh_watch.hpp"
 #include "fem/meshing/prepared_surface.hpp"
@@ -23,9 +26,15 @@ struct MeshBreakdown : MeshError {
   using MeshError::MeshError;
 };
 
+// The tetrahedra that fill the solid and, on demand, all others of the same points.
+struct DelaunayMesh {
+  LinearTets tets;
+  std::function<HullTets()> hull;
+};
+
 // Delaunay refinement of the solid inside the surface; sides are labeled by patch. Throws
 // MeshLimitError on the limits of `options` and `watch`, MeshBreakdown.
-LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
-                         const MeshOptions& options, Attempt attempt, MeshWatch& watch);
+DelaunayMesh delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
+                           const MeshOptions& options, Attempt attempt, MeshWatch& watch);
 
 }  // namespace codesign::fem
