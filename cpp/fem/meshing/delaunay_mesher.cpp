@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -298,28 +297,21 @@ int label_of(const Complex& complex, Complex::Cell_handle cell, int k, const Pat
   if (const int patch = cell->surface_patch_index(k); complex.is_in_complex(cell, k))
     return patch - 1;
   Vector3d center = Vector3d::Zero();
-  for (const int i : kTetSides[k]) center += to_vector(cell->vertex(i)->point().point()) / 3.0;
+  for (const int i : kTetSides[k]) {
+    const auto& p = cell->vertex(i)->point();
+    center += Vector3d(p.x(), p.y(), p.z()) / 3.0;
+  }
   return patches.of_triangle[static_cast<std::size_t>(oracle.nearest(center, -1).triangle)];
 }
 
 // Of all vertices, those of the protecting balls included.
 std::vector<Vector3d> points_of(const Complex& complex) {
   std::vector<Vector3d> points;
-  for (const auto vertex : complex.triangulation().finite_vertex_handles())
-    points.push_back(to_vector(vertex->point().point()));
-  return points;
-}
-
-// Of a vertex among the points of a mesh, to which it is added if it is not there yet.
-template <class Mesh>
-int number_of(const Complex& complex, Complex::Vertex_handle vertex,
-              std::unordered_map<const void*, int>& index, Mesh& mesh) {
-  const auto [at, fresh] = index.try_emplace(&*vertex, static_cast<int>(mesh.points.size()));
-  if (fresh) {
-    mesh.points.push_back(to_vector(vertex->point().point()));
-    mesh.dimension.push_back(complex.in_dimension(vertex));
+  for (const auto vertex : complex.triangulation().finite_vertex_handles()) {
+    const auto& p = vertex->point();
+    points.emplace_back(p.x(), p.y(), p.z());
   }
-  return at->second;
+  return points;
 }
 
 LinearTets extract(const Complex& complex, const Patches& patches, const SolidOracle& oracle) {
@@ -329,7 +321,14 @@ LinearTets extract(const Complex& complex, const Patches& patches, const SolidOr
        ++cell) {
     std::array<int, 4> tet, labels;
     for (int k = 0; k < 4; ++k) {
-      tet[static_cast<std::size_t>(k)] = number_of(complex, cell->vertex(k), index, mesh);
+      const auto vertex = cell->vertex(k);
+      const auto [at, fresh] = index.try_emplace(&*vertex, static_cast<int>(mesh.points.size()));
+      if (fresh) {
+        const auto& p = vertex->point();
+        mesh.points.emplace_back(p.x(), p.y(), p.z());
+        mesh.dimension.push_back(complex.in_dimension(vertex));
+      }
+      tet[static_cast<std::size_t>(k)] = at->second;
       labels[static_cast<std::size_t>(k)] = complex.is_in_complex(cell->neighbor(k))
                                                 ? -1
                                                 : label_of(complex, cell, k, patches, oracle);
@@ -340,25 +339,12 @@ LinearTets extract(const Complex& complex, const Patches& patches, const SolidOr
   return mesh;
 }
 
-HullTets hull_of(const Complex& complex) {
-  HullTets hull;
-  std::unordered_map<const void*, int> index;
-  for (const auto cell : complex.triangulation().finite_cell_handles()) {
-    std::array<int, 4> tet{};
-    for (int k = 0; k < 4; ++k)
-      tet[static_cast<std::size_t>(k)] = number_of(complex, cell->vertex(k), index, hull);
-    hull.tets.push_back(tet);
-    hull.inside.push_back(complex.is_in_complex(cell));
-  }
-  return hull;
-}
-
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
 
-DelaunayMesh delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
-                           const MeshOptions& options, Attempt attempt, MeshWatch& watch) {
+LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
+                         const MeshOptions& options, Attempt attempt, MeshWatch& watch) {
   const auto& [surface, simplified, topology, patches, lines, oracle] = prepared;
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh in every run
   const SizingField length{&size, &watch, 1.0};
@@ -366,9 +352,7 @@ DelaunayMesh delaunay_mesh(const PreparedSurface& prepared, const SizeField& siz
   const SizingField distance{&size, &watch, options.facet_distance};
   CGAL::Mesh_error_code error = CGAL::CGAL_MESH_3_NO_ERROR;
   namespace set = CGAL::parameters;
-  const auto shared =
-      std::make_shared<Complex>();  // lives as long as somebody may ask for the hull
-  Complex& complex = *shared;
+  Complex complex;
   try {
     const SolidDomain domain(surface, patches, lines, oracle, watch);
     const Criteria criteria(
@@ -388,7 +372,7 @@ DelaunayMesh delaunay_mesh(const PreparedSurface& prepared, const SizeField& siz
     if (error == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED)
       watch.report(MeshWatch::Limit::vertices, size, points_of(complex));
     if (complex.number_of_cells_in_complex() == 0) throw MeshBreakdown("the mesh is empty");
-    return {extract(complex, patches, oracle), [shared] { return hull_of(*shared); }};
+    return extract(complex, patches, oracle);
   } catch (const MeshWatch::Stop& stop) {
     watch.report(stop.limit, size, points_of(complex));
   } catch (const CGAL::Failure_exception& e) {

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <functional>
-
 #include "errors.hpp"
 #include "fem/meshing/linear_tets.hpp"
-#include "fem/meshing/mended_tets.hpp"
 #include "fem/meshing/mesh_options.hpp"
 #include "fem/meshing/mesh_watch.hpp"
 #include "fem/meshing/prepared_surface.hpp"
@@ -26,15 +23,9 @@ struct MeshBreakdown : MeshError {
   using MeshError::MeshError;
 };
 
-// The tetrahedra that fill the solid and, on demand, all others of the same points.
-struct DelaunayMesh {
-  LinearTets tets;
-  std::function<HullTets()> hull;
-};
-
 // Delaunay refinement of the solid inside the surface; sides are labeled by patch. Throws
 // MeshLimitError on the limits of `options` and `watch`, MeshBreakdown.
-DelaunayMesh delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
-                           const MeshOptions& options, Attempt attempt, MeshWatch& watch);
+LinearTets delaunay_mesh(const PreparedSurface& prepared, const SizeField& size,
+                         const MeshOptions& options, Attempt attempt, MeshWatch& watch);
 
 }  // namespace codesign::fem

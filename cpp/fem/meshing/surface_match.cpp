@@ -12,7 +12,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kOffPatch = 0.15;  // of an edge between two patches, relative to its length
-constexpr double kOfWallOff = 0.5;  // of a wall, that its boundary may be off
 constexpr double kAcross = 0.3;     // cosine of a side's normal and that of the surface beside it
 
 Vector3d node(const TetMesh& mesh, int i) { return mesh.nodes.row(i).transpose(); }
@@ -158,16 +157,6 @@ std::vector<Mismatch> find_mismatches(const TetMesh& mesh, const SurfaceMesh& su
   std::stable_sort(found.begin(), found.end(),
                    [](const Mismatch& a, const Mismatch& b) { return a.size > b.size; });
   return found;
-}
-
-bool keeps_walls(const TetMesh& mesh, const std::vector<WallSample>& walls, double least) {
-  const SurfaceMesh boundary = boundary_surface(mesh);
-  const SolidOracle oracle(boundary, boundary.face);
-  for (const WallSample& wall : walls)
-    if (wall.area > 0.0 && (oracle.nearest(wall.point, -1).point - wall.point).norm() >
-                               std::max(kOfWallOff * wall.thickness, least))
-      return false;
-  return true;
 }
 
 }  // namespace codesign::fem

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "fem/mesh/tet_mesh.hpp"
-#include "fem/meshing/wall_samples.hpp"
 #include "fem/surface/solid_oracle.hpp"
 #include "fem/surface/surface_features.hpp"
 #include "fem/surface/surface_mesh.hpp"
@@ -39,9 +38,5 @@ struct Mismatch {
 // patches of the surface.
 std::vector<Mismatch> find_mismatches(const TetMesh& mesh, const SurfaceMesh& surface,
                                       const SolidOracle& oracle);
-
-// Whether the corner triangles of the boundary are nowhere farther from the walls that samples with
-// an area stand for than half of their thickness, or `least` [m] if that is more.
-bool keeps_walls(const TetMesh& mesh, const std::vector<WallSample>& walls, double least);
 
 }  // namespace codesign::fem

@@ -4,20 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "errors.hpp"
 #include "fem/mesh/mesh_quality.hpp"
 #include "fem/meshing/curved_edges.hpp"
 #include "fem/meshing/delaunay_mesher.hpp"
 #include "fem/meshing/linear_tets.hpp"
-#include "fem/meshing/mended_tets.hpp"
 #include "fem/meshing/mesh_watch.hpp"
 #include "fem/meshing/prepared_surface.hpp"
-#include "fem/meshing/surface_match.hpp"
 #include "fem/meshing/tet_improve.hpp"
 #include "fem/meshing/topology_keeper.hpp"
 
@@ -26,9 +22,6 @@ namespace {
 
 constexpr double kAreaSlack = 0.25;  // of the area of a face: beyond that, labels are wrong
 constexpr double kCrumb = 1e-4;      // pieces smaller than this part of the mesh are dropped
-// How far off the surface the center of a tetrahedron decides where that lies, relative to its
-// longest edge: nowhere, beyond what sides keep, or nearer.
-constexpr double kOffSurface[] = {1.0, 0.06, 0.02};
 constexpr double kStraightAngle = 168.0 * kDegree;
 
 void check_options(const MeshOptions& options) {
@@ -108,9 +101,10 @@ void check_against_surface(const TetMesh& mesh, const SurfaceMesh& surface, cons
   check_face_areas(mesh, surface);
 }
 
-// Quadratic elements of what the mesher filled; boundary_face holds patches.
-TetMesh finished_mesh(LinearTets tets, const PreparedSurface& prepared, const MeshOptions& options,
-                      MeshWatch& watch) {
+// One mesh at the given size; boundary_face holds patches.
+TetMesh mesh_once(const PreparedSurface& prepared, const SizeField& size,
+                  const MeshOptions& options, Attempt attempt, MeshWatch& watch) {
+  LinearTets tets = delaunay_mesh(prepared, size, options, attempt, watch);
   const int crumbs = remove_crumbs(tets, kCrumb);
   const int peeled = peel_flat_tets(tets, options.flat_angle, kStraightAngle);
   improve_tets(tets, options.sliver_angle, prepared.oracle, watch);
@@ -120,36 +114,15 @@ TetMesh finished_mesh(LinearTets tets, const PreparedSurface& prepared, const Me
   return mesh;
 }
 
-// A mesh of the same points that has the topology of the surface, if one is found.
-std::optional<TetMesh> mended_mesh(const HullTets& hull, const PreparedSurface& prepared,
-                                   const TopologyKeeper& keeper, const MeshOptions& options,
-                                   MeshWatch& watch) {
-  for (const double share : kOffSurface) try {
-      TetMesh mesh = finished_mesh(mend_tets(hull, prepared, share), prepared, options, watch);
-      if (measure_topology(boundary_triangles(mesh)) == prepared.topology && keeper.is_close(mesh))
-        return mesh;
-    } catch (const MeshLimitError&) {
-      throw;
-    } catch (const MeshError&) {  // an element without volume: the next share turns others
-    }
-  return std::nullopt;
-}
-
-// The first mesh that the keeper accepts; if there is none, the first one that could be mended.
+// The first mesh that the keeper accepts.
 TetMesh accepted_mesh(const PreparedSurface& prepared, TopologyKeeper& keeper,
                       const MeshOptions& options, MeshWatch& watch) {
-  std::optional<TetMesh> mended;
   for (;;) try {
-      const DelaunayMesh raw =
-          delaunay_mesh(prepared, keeper.size(), options, keeper.attempt(), watch);
-      TetMesh mesh = finished_mesh(raw.tets, prepared, options, watch);
+      TetMesh mesh = mesh_once(prepared, keeper.size(), options, keeper.attempt(), watch);
       if (keeper.accepts(mesh)) return mesh;
-      if (!mended) mended = mended_mesh(raw.hull(), prepared, keeper, options, watch);
     } catch (const MeshBreakdown& error) {
       keeper.retry(error.what());
-    } catch (const MeshError& error) {
-      if (mended) return *std::move(mended);
-      if (dynamic_cast<const MeshLimitError*>(&error) == nullptr) throw;
+    } catch (const MeshLimitError& error) {
       throw MeshLimitError(keeper.explain(error.what()));
     }
 }

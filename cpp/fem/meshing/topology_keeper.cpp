@@ -1,12 +1,10 @@
 #include "fem/meshing/topology_keeper.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <numeric>
 
 #include "errors.hpp"
-#include "fem/mesh/mesh_quality.hpp"
 #include "fem/mesh/solid_euler.hpp"
 #include "fem/meshing/surface_match.hpp"
 #include "fem/meshing/wall_size.hpp"
@@ -17,10 +15,6 @@ namespace {
 // Faults below both are smaller than what surfaces are simplified by.
 constexpr double kResolved = 5e-5;  // m
 constexpr double kOfExtent = 5e-4;
-
-constexpr double kMendedVolume = 0.01;  // change of the volume by mending, at most
-constexpr double kMendedDistance =
-    0.25;  // of a mended boundary to the surface, relative to the edge length
 
 constexpr int kBreakdowns = 3;  // that are answered by another size
 constexpr double kOtherSize = 0.9;
@@ -65,8 +59,9 @@ bool TopologyKeeper::accepts(const TetMesh& mesh) {
   const Topology found = measure_topology(boundary_triangles(mesh));
   if (found == prepared_.topology) return true;
   std::vector<Mismatch> mismatches = find_mismatches(mesh, prepared_.surface, prepared_.oracle);
+  const double resolved = std::min(kResolved, kOfExtent * extent(prepared_.surface.points));
   const auto large = std::count_if(mismatches.begin(), mismatches.end(),
-                                   [&](const Mismatch& m) { return m.size > resolved(); });
+                                   [&](const Mismatch& m) { return m.size > resolved; });
   const int euler = 2 * solid_euler(mesh.tets.leftCols<4>());
   if (large == 0 && found.euler.size() == prepared_.topology.euler.size() &&
       euler == total_euler(prepared_.topology)) {
@@ -90,19 +85,6 @@ void TopologyKeeper::retry(const std::string& reason) {
   if (breakdowns_++ == kBreakdowns)
     throw MeshError(explain(reason + ", at four edge lengths: give another one"));
   size_ = scaled(size_, kOtherSize);
-}
-
-bool TopologyKeeper::is_close(const TetMesh& mesh) const {
-  const MeshQuality quality = measure_quality(mesh);
-  const double volume = enclosed_volume(prepared_.surface);
-  return quality.min_dihedral > 0.0 && std::abs(quality.volume - volume) < kMendedVolume * volume &&
-         surface_distance(mesh, prepared_.surface, prepared_.oracle).distance <
-             kMendedDistance * size_.base &&
-         keeps_walls(mesh, walls_, resolved());
-}
-
-double TopologyKeeper::resolved() const {
-  return std::min(kResolved, kOfExtent * extent(prepared_.surface.points));
 }
 
 std::string TopologyKeeper::explain(const std::string& reason) const {

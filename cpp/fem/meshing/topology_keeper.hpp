@@ -38,10 +38,6 @@ class TopologyKeeper {
   // Throws MeshError with `reason` after the last time.
   void retry(const std::string& reason);
 
-  // Whether a mesh that was mended, after one that was not accepted, keeps to the surface: its
-  // volume, within a part of the edge length, and within half of every wall.
-  bool is_close(const TetMesh& mesh) const;
-
   // What a mesh of another topology could not be refined for; the reason alone if there was none.
   std::string explain(const std::string& reason) const;
 
@@ -49,8 +45,6 @@ class TopologyKeeper {
   void report(TetMesh& mesh) const;
 
  private:
-  double resolved() const;  // faults below are only counted, m
-
   const PreparedSurface& prepared_;
   SizeField size_;
   MeshOptions options_;

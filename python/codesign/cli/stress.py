@@ -22,7 +22,6 @@ from codesign.parts.strength import strength_document
 from codesign.units import MILLIMETER
 
 LEFT_OUT_WARNED = 1.1  # times the peak: a stress left out that is a warning
-FAR_FROM_SURFACE = 0.12  # of the edge length: twice what sides of the mesh keep to the surface
 
 
 @dataclass(frozen=True)
@@ -206,11 +205,6 @@ def _warnings(solved: Solved) -> list[str]:
         found.append(
             f"the mesh touches itself at {faults} places of at most 0.05 mm, on ledges that no element follows: the "
             "solid keeps the topology of the surface, but stresses on such ledges mean nothing"
-        )
-    if (off := solved.mesh.report.surface_distance) > FAR_FROM_SURFACE * solved.size.base:
-        found.append(
-            f"the mesh is up to {off / MILLIMETER:.2g} mm off the surface, where faces meet at tiny angles or nearly "
-            "touch: it has the topology of the surface, but stresses there mean nothing"
         )
     if not result.peak_resolved:
         found.append(
