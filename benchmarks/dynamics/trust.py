@@ -5,6 +5,7 @@
   python benchmarks/dynamics/trust.py hold --designs 6       # torques held for 8 ms against a torque loop of 1 ms
   python benchmarks/dynamics/trust.py time --repeats 5       # CPU of a flight over that of the study as published
   python benchmarks/dynamics/trust.py steps --study ironcub --run RUN --designs 50   # with designs of that run's front
+  python benchmarks/dynamics/trust.py steps --study ironcub --run RUN --feasible     # with all of its feasible designs
   python benchmarks/dynamics/trust.py seeds --study ironcub --run RUN                # of each design on its front
 
 Designs of `steps`: published ones and Sobol points, with --run 29 far-apart ones of its front first; of each the
@@ -63,6 +64,11 @@ def whole(study: codesign.Study, numbers: Sequence[int]) -> Theta:
     return dict(zip((v.name for v in study.space.variables), numbers, strict=False)) | {
         v.name: baseline[v.name] for v in study.space.variables[len(numbers) :]
     }
+
+
+def feasible(run: Path) -> list[Theta]:
+    """All feasible designs of a run."""
+    return [evaluation.design for evaluation in load_run(run).evaluations if evaluation.status == "feasible"]
 
 
 def far_apart(run: Path, count: int) -> list[Theta]:
@@ -247,6 +253,7 @@ def main() -> None:
     parser.add_argument("--study", default="ironcub_robust")
     parser.add_argument("--designs", type=int, default=28)
     parser.add_argument("--run", type=Path, help="whose front is flown, in `steps` and `seeds`")
+    parser.add_argument("--feasible", action="store_true", help="all feasible designs of the run, in `steps`")
     parser.add_argument("--draws", type=int, default=3, help="of the study's seeds, in `steps`")
     parser.add_argument("--log", type=Path, help="file of the designs flown so far, in `steps`")
     parser.add_argument("--seeds", type=int, default=20)
@@ -255,7 +262,8 @@ def main() -> None:
     asked = parser.parse_args()
     study = codesign.load_study(asked.study)
     if asked.what == "steps":
-        steps(study, pool(study, asked.designs, asked.run), asked.draws, asked.log)
+        designs = feasible(asked.run) if asked.feasible else pool(study, asked.designs, asked.run)
+        steps(study, designs, asked.draws, asked.log)
     elif asked.what == "seeds":
         named = [whole(study, theta) for theta in asked.design or PUBLISHED[:1]]
         seeds(study, [r.evaluation.design for r in load_run(asked.run).front] if asked.run else named, asked.seeds)
