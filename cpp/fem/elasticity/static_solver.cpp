@@ -141,18 +141,25 @@ struct StaticSystem::Data {
     return result;
   }
 
-  Eigen::VectorXd solve_free(const Eigen::VectorXd& force, int& iterations) const {
+  // A factor made where conjugate gradients do not converge, as with elements of extreme shape.
+  using Rescue = std::unique_ptr<CholeskyFactor>;
+  Eigen::VectorXd solve_free(const Eigen::VectorXd& force, int& iterations, Rescue& rescue) const {
     if (factor) return factor->solve(force);
+    if (rescue) return rescue->solve(force);
     ConjugateGradientResult result =
         conjugate_gradients(stiffness, *preconditioner, force, kGradientTolerance, kMaxIterations);
     iterations += result.iterations;
-    return std::move(result.solution);
+    if (result.converged || part->settings.solver != LinearSolver::automatic ||
+        factor_bytes(pattern) > memory_left())
+      return std::move(result.solution);
+    rescue = std::make_unique<CholeskyFactor>(pattern, stiffness);
+    return rescue->solve(force);
   }
 
   // Of nodal components (3 n), zero where held.
-  Eigen::VectorXd solve_nodal(const Eigen::VectorXd& force, int& iterations) const {
+  Eigen::VectorXd solve_nodal(const Eigen::VectorXd& force, int& iterations, Rescue& rescue) const {
     if (condensed) return condensed->solve(force);
-    return nodal_columns(pattern, solve_free(gather(force), iterations));
+    return nodal_columns(pattern, solve_free(gather(force), iterations, rescue));
   }
 
   // One column of loads: (3 n) N, and what they do.
@@ -167,6 +174,7 @@ struct StaticSystem::Data {
   std::vector<Displaced> displace(const Eigen::MatrixXd& loads, double share = 1.0) const {
     const double tolerance = part->settings.residual_tolerance;
     std::vector<Displaced> all(static_cast<std::size_t>(loads.cols()));
+    Rescue rescue;
     Eigen::MatrixXd u = part->constraints.displacement.replicate(1, loads.cols());
     if (condensed)
       u = condensed_solution(*condensed, part->mesh, part->material, part->constraints, loads,
@@ -182,7 +190,7 @@ struct StaticSystem::Data {
         one.residual = scale > 0.0 ? left.norm() / scale : 0.0;
         if (one.residual <= tolerance || equations == 0) continue;
         if (solves > kMaxRefinements) refuse(one.residual);
-        u.col(i) += solve_nodal(loads.col(i) - forces.sum.col(i), one.iterations);
+        u.col(i) += solve_nodal(loads.col(i) - forces.sum.col(i), one.iterations, rescue);
         done = false;
       }
       if (!done) continue;
