@@ -18,7 +18,7 @@ from codesign.study.checking.cancelling import cancelled_loads
 from codesign.study.checking.cases import idle_cases
 from codesign.study.checking.numbers import constant_numbers
 from codesign.study.checking.problems import Problem
-from codesign.study.checking.ranges import refused_values
+from codesign.study.checking.ranges import Refusal
 from codesign.study.parts import bodies_given_twice
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from codesign.problem.design_space import Design
 
 
-def study_summary(study: Study) -> dict[str, Any]:
-    """Variables, size of the grid, objectives and limits (SI units) of a study."""
+def study_summary(study: Study, refusals: Sequence[Refusal] = ()) -> dict[str, Any]:
+    """Variables, size of the grid, objectives and limits (SI units) of a study. refusals: values that give no part."""
     return {
         "study": study.name,
         "hash": study.hash,
@@ -46,24 +46,24 @@ def study_summary(study: Study) -> dict[str, Any]:
         "generations": study.optimizer.generations,
         "workers": study.execution.workers,
         "control": control(study),
-        "notes": [f"{key}: {reason}" for key, reason in notes(study)],
+        "notes": [f"{key}: {reason}" for key, reason in notes(study, refusals)],
     }  # fmt: skip
 
 
-def notes(study: Study) -> Iterator[Problem]:
-    """What is no mistake, but may not be what was meant."""
+def notes(study: Study, refusals: Sequence[Refusal] = ()) -> Iterator[Problem]:
+    """What is no mistake, but may not be what was meant. refusals: values that give no part."""
     yield from constant_numbers(study.config)
     yield from idle_cases(study.config)
     yield from cancelled_loads(study.config)
     yield from bodies_given_twice(study.config, study.base_robot)
-    yield from ((key, reason) for key, reason, _ in refused_values(study, typical(study)))
+    yield from ((key, reason) for key, reason, _ in refusals)
 
 
-def hopeless(study: Study) -> Iterator[Problem]:
+def hopeless(study: Study, refusals: Sequence[Refusal]) -> Iterator[Problem]:
     """Why no design can come of a study that can be loaded: its robot cannot fly, or no values give a part."""
     if why := study.grounded:
         yield "flight", why
-    yield from ((key, reason) for key, reason, every in refused_values(study, typical(study)) if every)
+    yield from ((key, reason) for key, reason, every in refusals if every)
 
 
 def _unit(limit: Limit) -> str:

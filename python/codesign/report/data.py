@@ -127,7 +127,11 @@ class ReportData:
 
     def vector(self, evaluation: Evaluation) -> Matrix:
         """Objectives (m,) of an evaluation, of which less is better, in the units shown; NaN where unknown."""
-        return self.signs * [o.shown(evaluation.objectives.get(o.key, np.nan)) for o in self.objectives]
+        return self.signs * self.shown(evaluation)
+
+    def shown(self, evaluation: Evaluation) -> Matrix:
+        """Objectives (m,) of an evaluation as people read them; NaN where unknown."""
+        return np.array([o.shown(evaluation.objectives.get(o.key, np.nan)) for o in self.objectives])
 
     @cached_property
     def signs(self) -> Matrix:
@@ -280,8 +284,8 @@ class ReportData:
         near = feasible[(feasible >= min(shown) - wide) & (feasible <= max(shown) + wide)].tolist()
         low, high = min(shown + near), max(shown + near)
         margin = 0.07 * (high - low) or 0.05 * abs(high) or 1.0
-        low, high = sorted((self.objectives[k].sign * (low - margin), self.objectives[k].sign * (high + margin)))
-        return low, high
+        ends = self.signs[k] * np.array([low - margin, high + margin])
+        return float(ends.min()), float(ends.max())
 
     def gain(self, position: int) -> Matrix | None:
         """Relative change (m,) of each objective from the baseline to an entry, negative is better; NaN from zero."""

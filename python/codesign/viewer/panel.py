@@ -31,11 +31,9 @@ def facts(study: Any, evaluation: Evaluation, original: Evaluation | None, verdi
     for objective in objective_quantities(tuple(evaluation.objectives), study.config):
         value = evaluation.objectives[objective.key]
         before = original.objectives.get(objective.key) if original is not None else None
-        change = (
-            f" ({percent(objective.sign * (value - before) / abs(before))})"
-            if before and original is not evaluation
-            else ""
-        )
+        change = ""
+        if before and original is not evaluation:
+            change = f" ({percent(objective.sign * (value - before) / abs(before))})"
         lines.append(f"{objective.label}: **{number(objective.shown(value))}** {objective.unit}{change}")
     for name, part in evaluation.parts.items():
         if part.get("safety_factor"):

@@ -54,9 +54,11 @@ def evaluate(
         err.print("known from the cache; --no-cache computes it again")
     confirmations = loaded.confirm(evaluation.design) if confirm and evaluation.status != "failed" else {}
     if as_json:
-        told = {"confirmed": {name: c.confirmed for name, c in confirmations.items()}} if confirm else {}
-        told |= {"confirmation": {name: c.cases for name, c in confirmations.items()}} if confirm else {}
-        print_json(evaluation.to_dict() | told)
+        document = evaluation.to_dict()
+        if confirm:
+            document["confirmed"] = {name: found.confirmed for name, found in confirmations.items()}
+            document["confirmation"] = {name: found.cases for name, found in confirmations.items()}
+        print_json(document)
     else:
         print_evaluation(evaluation)
         if evaluation.status == "feasible":

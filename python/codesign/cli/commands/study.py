@@ -76,20 +76,22 @@ def check(
     Exit code 2 if anything is wrong.
     """
     from codesign.chain.study import load_study
-    from codesign.cli.study_summary import hopeless, measured, print_study, study_summary
+    from codesign.cli.study_summary import hopeless, measured, print_study, study_summary, typical
     from codesign.study.checking.everything import find_problems
+    from codesign.study.checking.ranges import refused_values
 
     problems = find_problems(study)
     loaded = None if problems else load_study(study)
+    refusals = list(refused_values(loaded, typical(loaded))) if loaded is not None else []
     if loaded is not None:
-        problems = [f"{loaded.path}: {key}: {reason}" for key, reason in hopeless(loaded)]
+        problems = [f"{loaded.path}: {key}: {reason}" for key, reason in hopeless(loaded, refusals)]
     if problems or loaded is None:
         if as_json:
             print_json({"problems": problems})
         for problem in [] if as_json else problems:
             out.print(problem, soft_wrap=True)
         return 2
-    summary = study_summary(loaded) | ({"evaluation": measured(loaded)} if time else {})
+    summary = study_summary(loaded, refusals) | ({"evaluation": measured(loaded)} if time else {})
     if as_json:
         print_json({"problems": [], **summary})
     else:

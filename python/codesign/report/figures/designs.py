@@ -116,9 +116,7 @@ def parallel(data: FigureData) -> Any:
 
 def _row(run: ReportData, evaluation: Evaluation) -> Matrix:
     """Parameters and objectives of a design in one row."""
-    return np.concatenate(
-        [[v.position(evaluation.design[v.name]) for v in run.variables], run.signs * run.vector(evaluation)]
-    )
+    return np.concatenate([[v.position(evaluation.design[v.name]) for v in run.variables], run.shown(evaluation)])
 
 
 def _names(run: ReportData) -> list[str]:

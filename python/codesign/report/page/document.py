@@ -106,7 +106,7 @@ def _row(
         "x": [evaluation.design[v.name] for v in run.variables],
         "status": STATUS[evaluation.status],
         "reason": evaluation.reason,
-        "f": [_rounded(value) for value in run.signs * run.vector(evaluation)],
+        "f": [_rounded(value) for value in run.shown(evaluation)],
         "c": [_shown(quantity(k), evaluation.constraints) for k in constraints],
         "g": [_rounded(_violation(run, evaluation, k)) for k in constraints],
         "p": [_part(evaluation.parts[name]) if name in evaluation.parts else None for name in parts],
